@@ -1,0 +1,343 @@
+/* gnomon.h -- polygon scenes with exact hidden surfaces and exact shadows.
+ *
+ * The engine's whole public interface; it needs libc and libm alone. Compiles as C89 to C17 and C++98 to C++17.
+ *
+ * Conventions
+ * - Coordinates are right-handed, in any one unit; colours are linear RGB triples, each component >= 0.
+ * - Pixel (0,0) is the top left one; a picture row runs left to right; pixel centres lie at +0.5.
+ * - A call that can fail returns a gno_status. The message behind a failure stays in the context
+ *   (gno_context_message) until the next failure. On failure output pointers are set to NULL or left untouched.
+ * - `_def` structures are filled by their gno_..._default function and then changed by the caller.
+ * - A context, and the scenes made from it, belong to one thread at a time; two contexts are independent.
+ *   The library keeps no global state, prints nothing, and never ends the process.
+ */
+#ifndef GNOMON_GNOMON_H
+#define GNOMON_GNOMON_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(__GNUC__) && __GNUC__ >= 4
+#define GNO_API __attribute__((visibility("default")))
+#else
+#define GNO_API
+#endif
+
+#define GNO_VERSION_MAJOR 0
+#define GNO_VERSION_MINOR 1
+#define GNO_VERSION_PATCH 0
+
+/* The library's version as "major.minor.patch"; constant storage. */
+GNO_API const char *gno_version(void);
+
+/* ---- status ------------------------------------------------------------------------------------------------- */
+
+typedef enum gno_status {
+    GNO_OK = 0,
+    GNO_ERROR_MEMORY,    /* the allocator returned NULL */
+    GNO_ERROR_ARGUMENT,  /* a NULL, an index or a value that the call does not accept */
+    GNO_ERROR_LIMIT,     /* a count or size beyond the stated limits */
+    GNO_ERROR_INPUT,     /* a file or scene that is not well formed; the message names file, line and key */
+    GNO_ERROR_FILE,      /* a file that cannot be opened, read or written */
+    GNO_ERROR_CANCELLED  /* the progress callback asked to stop */
+} gno_status;
+
+/* A short constant English text for a status. */
+GNO_API const char *gno_status_text(gno_status status);
+
+/* ---- limits -------------------------------------------------------------------------------------------------- */
+
+#define GNO_MAX_IMAGE_SIDE 65536        /* pixels, each way */
+#define GNO_MAX_LIGHTS 4096             /* after area lights are split into points */
+#define GNO_MAX_POLYGONS 268435456      /* 2^28, and as many vertices */
+#define GNO_MAX_CORNERS 1073741824      /* 2^30 polygon corners in all */
+#define GNO_MAX_LINES 256               /* sample lines per pixel row */
+#define GNO_MAX_COORDINATE 1e15         /* absolute value of any coordinate after transforms */
+#define GNO_MAX_THREADS 256
+
+/* ---- context ------------------------------------------------------------------------------------------------- */
+
+typedef struct gno_context gno_context;
+
+/* Allocates (block NULL), resizes, or frees (new_size 0, result ignored); old_size is always exact.
+ * Returned blocks are aligned as malloc's are. Called from several threads at once during a render: must be thread safe. */
+typedef void *(*gno_alloc_fn)(void *user, void *block, size_t old_size, size_t new_size);
+
+typedef enum gno_log_level { GNO_LOG_INFO = 0, GNO_LOG_WARNING = 1 } gno_log_level;
+
+/* Receives remarks that are not failures (skipped polygons and the like). Silent when NULL. */
+typedef void (*gno_log_fn)(void *user, gno_log_level level, const char *text);
+
+/* Called now and then while a long call runs, fraction in [0,1]; non-zero stops the call with GNO_ERROR_CANCELLED.
+ * Always called from the thread that made the call. */
+typedef int (*gno_progress_fn)(void *user, const char *stage, double fraction);
+
+typedef struct gno_context_def {
+    gno_alloc_fn alloc; /* NULL: malloc, realloc, free */
+    void *alloc_user;
+    gno_log_fn log; /* NULL: silent */
+    void *log_user;
+    gno_progress_fn progress; /* NULL: none */
+    void *progress_user;
+} gno_context_def;
+
+GNO_API gno_context_def gno_context_def_default(void);
+
+/* def may be NULL for the defaults. Errors: MEMORY, ARGUMENT. */
+GNO_API gno_status gno_context_create(const gno_context_def *def, gno_context **context);
+
+/* Destroys a context; every scene made from it must be gone. NULL is accepted. */
+GNO_API void gno_context_destroy(gno_context *context);
+
+/* The last failure's message ("" before any), valid until the next failure in this context. */
+GNO_API const char *gno_context_message(const gno_context *context);
+
+/* Bytes that the context holds now, and the most it has held, by exact account of its allocator. */
+GNO_API size_t gno_context_memory(const gno_context *context, size_t *peak);
+
+/* Sends one remark to the context's log; for the file library and other companions of the engine. */
+GNO_API void gno_context_log(gno_context *context, gno_log_level level, const char *text);
+
+/* Sets the context's message and returns status unchanged; for the file library and other companions of the engine. */
+GNO_API gno_status gno_context_fail(gno_context *context, gno_status status, const char *text);
+
+/* Memory from the context's allocator (see gno_alloc_fn); NULL when it fails. For companions of the engine. */
+GNO_API void *gno_context_realloc(gno_context *context, void *block, size_t old_size, size_t new_size);
+
+/* ---- scene --------------------------------------------------------------------------------------------------- */
+
+typedef struct gno_scene gno_scene;
+
+/* flat: the plane's normal, lighting taken at every point; constant: one intensity a polygon, lighting taken at its
+ * centroid (8.2); gouraud: intensities interpolated from the vertices (8.2.1); phong: normals interpolated (8.2.4). */
+typedef enum gno_shading {
+    GNO_SHADING_FLAT = 0,
+    GNO_SHADING_CONSTANT = 1,
+    GNO_SHADING_GOURAUD = 2,
+    GNO_SHADING_PHONG = 3
+} gno_shading;
+
+/* Coefficients of the simple lighting model (8.1.7), three channels each, >= 0. */
+typedef struct gno_material {
+    double ambient[3];      /* ka; default 0.8 */
+    double diffuse[3];      /* kd; default 0.8 */
+    double specular[3];     /* ks; default 0 */
+    double shininess;       /* n, >= 0; default 1 */
+    double transmission[3]; /* share of light passed to what lies behind, in [0,1]; default 0 (opaque) */
+    gno_shading shading;    /* default flat */
+    int two_sided;          /* default 1; 0: not drawn from behind, but casts shadows both ways */
+} gno_material;
+
+GNO_API gno_material gno_material_default(void);
+
+typedef enum gno_light_type {
+    GNO_LIGHT_POINT = 0,
+    GNO_LIGHT_DIRECTIONAL = 1,
+    GNO_LIGHT_SPOT = 2,
+    GNO_LIGHT_AREA = 3 /* a parallelogram of samples x samples point lights sharing the intensity */
+} gno_light_type;
+
+typedef enum gno_falloff { GNO_FALLOFF_NONE = 0, GNO_FALLOFF_LINEAR = 1, GNO_FALLOFF_INVERSE_SQUARE = 2 } gno_falloff;
+
+typedef struct gno_light {
+    gno_light_type type;
+    double position[3];  /* point, spot; area: the parallelogram's corner */
+    double direction[3]; /* directional, spot: the way light travels; need not be unit */
+    double edge1[3];     /* area */
+    double edge2[3];
+    double angle;        /* spot: full cone, degrees, in (0,180); hard edge; default 45 */
+    double intensity[3]; /* Il; default 1 */
+    gno_falloff falloff; /* default none */
+    double falloff_k;    /* K of 1/(d+K); default 1 */
+    int distance_from_viewer; /* linear falloff: 1 (default) d from the viewer, 0 from the light */
+    int samples;         /* area: points each way, >= 1; default 4 */
+} gno_light;
+
+/* A white point light at the origin without falloff. */
+GNO_API gno_light gno_light_default(void);
+
+typedef enum gno_camera_type { GNO_CAMERA_PERSPECTIVE = 0, GNO_CAMERA_ORTHOGRAPHIC = 1 } gno_camera_type;
+
+typedef struct gno_camera {
+    gno_camera_type type;
+    double eye[3];
+    double target[3];
+    double up[3];
+    double fov;    /* perspective: vertical, degrees, in (0,180); default 40 */
+    double height; /* orthographic: vertical extent of the picture in scene units; default 1 */
+} gno_camera;
+
+typedef struct gno_image_def {
+    int width;            /* default 1280 */
+    int height;           /* default 720 */
+    double background[3]; /* default 0 */
+} gno_image_def;
+
+typedef enum gno_weighting { GNO_WEIGHTING_AREA = 0, GNO_WEIGHTING_ANGLE = 1, GNO_WEIGHTING_EQUAL = 2 } gno_weighting;
+
+/* Polygons in flat arrays; all are read during the call and copied. A polygon is one outer ring followed by any
+ * number of hole rings, in any winding; ring r has corners ring_start[r] .. ring_start[r+1]-1, polygon p has rings
+ * polygon_start[p] .. polygon_start[p+1]-1. Corner arrays hold indices into the vertex, normal and texcoord arrays. */
+typedef struct gno_mesh_def {
+    const char *name; /* may be NULL */
+    size_t vertex_count;
+    const double *positions; /* 3 per vertex */
+    size_t normal_count;
+    const double *normals; /* 3 per normal, need not be unit; NULL: none */
+    size_t texcoord_count;
+    const double *texcoords; /* 2 per texcoord; NULL: none */
+    size_t polygon_count;
+    const unsigned *polygon_start; /* polygon_count+1 ring offsets; NULL: polygon p is ring p */
+    size_t ring_count;             /* polygon_count when polygon_start is NULL */
+    const unsigned *ring_start;    /* ring_count+1 corner offsets; NULL: all rings are triangles */
+    size_t corner_count;
+    const int *corner_vertex;   /* 0-based */
+    const int *corner_normal;   /* 0-based, -1: none; NULL: none anywhere */
+    const int *corner_texcoord; /* as corner_normal */
+    const int *polygon_material; /* material index per polygon; NULL: material for all */
+    int material;                /* index from gno_scene_add_material; default 0, the scene's default material */
+    int shading;                 /* a gno_shading for all polygons, or -1 (default): as their materials say */
+    int average_normals;         /* 1: ignore the given normals and average; 0 (default): average only where none are given */
+    double crease;               /* degrees; polygons that meet at more are averaged apart; default 180 (never) */
+    gno_weighting weighting;
+    double transform[12]; /* rows of a 3x4 matrix applied to positions; normals take the inverse transpose; default identity */
+    int priority;         /* among coplanar polygons the higher is in front; default 0 */
+} gno_mesh_def;
+
+GNO_API gno_mesh_def gno_mesh_def_default(void);
+
+/* An empty scene: one default material (index 0), no light, default camera and picture. Errors: MEMORY, ARGUMENT. */
+GNO_API gno_status gno_scene_create(gno_context *context, gno_scene **scene);
+GNO_API void gno_scene_destroy(gno_scene *scene); /* accepts NULL */
+GNO_API gno_context *gno_scene_context(const gno_scene *scene);
+
+/* Index may be NULL. Errors: MEMORY, ARGUMENT (values not finite or out of range), LIMIT. */
+GNO_API gno_status gno_scene_add_material(gno_scene *scene, const gno_material *material, int *index);
+GNO_API gno_status gno_scene_add_light(gno_scene *scene, const char *name, const gno_light *light, int *index);
+
+/* Adds polygons; their numbers run on from *first_polygon (may be NULL). Corner indices, offsets and coordinates are
+ * checked here; planarity and area when the scene is prepared. Errors: MEMORY, ARGUMENT, LIMIT; the scene is unchanged then. */
+GNO_API gno_status gno_scene_add_mesh(gno_scene *scene, const gno_mesh_def *mesh, size_t *first_polygon);
+
+GNO_API gno_status gno_scene_set_camera(gno_scene *scene, const gno_camera *camera);
+GNO_API gno_camera gno_scene_camera(const gno_scene *scene);
+GNO_API gno_status gno_scene_set_image(gno_scene *scene, const gno_image_def *image);
+GNO_API gno_image_def gno_scene_image(const gno_scene *scene);
+GNO_API gno_status gno_scene_set_ambient(gno_scene *scene, const double ambient[3]);
+GNO_API void gno_scene_ambient(const gno_scene *scene, double ambient[3]);
+
+/* Perspective, eye (3,-6,2), target (0,0,1), up z, fov 40. */
+GNO_API gno_camera gno_camera_default(void);
+GNO_API gno_image_def gno_image_def_default(void);
+
+/* ---- reading a scene back -------------------------------------------------------------------------------------- */
+
+typedef struct gno_scene_counts {
+    size_t vertices, polygons, rings, corners, normals, texcoords, materials, lights, objects;
+} gno_scene_counts;
+
+GNO_API gno_scene_counts gno_scene_count(const gno_scene *scene);
+
+/* Axis-aligned bounds of all polygon corners; returns 0 and zeros for a scene without polygons. */
+GNO_API int gno_scene_bounds(const gno_scene *scene, double lower[3], double upper[3]);
+GNO_API gno_status gno_scene_material(const gno_scene *scene, int index, gno_material *material);
+GNO_API gno_status gno_scene_light(const gno_scene *scene, int index, gno_light *light, const char **name);
+
+/* One polygon's view into the scene's arrays, valid until the scene changes. */
+typedef struct gno_polygon {
+    size_t ring_count;
+    const unsigned *ring_start; /* ring_count+1 offsets into the corner arrays below */
+    const int *corner_vertex;   /* indices into positions */
+    const int *corner_normal;   /* indices into normals, -1: none */
+    const int *corner_texcoord;
+    const double *positions; /* 3 per vertex, scene space */
+    const double *normals;
+    const double *texcoords;
+    int material;
+    int object;   /* number of the mesh it came from */
+    int shading;  /* a gno_shading, the mesh's or the material's */
+    int priority;
+} gno_polygon;
+
+GNO_API gno_status gno_scene_polygon(const gno_scene *scene, size_t index, gno_polygon *polygon);
+
+/* What preparing the scene found wrong; counts of source polygons. */
+typedef struct gno_scene_problems {
+    size_t degenerate; /* no area: skipped */
+    size_t non_planar; /* split into triangles */
+} gno_scene_problems;
+
+/* Prepares the scene if need be (planes, triangulations, vertex normals); rendering does it by itself. */
+GNO_API gno_status gno_scene_prepare(gno_scene *scene, int threads, gno_scene_problems *problems);
+
+/* ---- rendering ------------------------------------------------------------------------------------------------ */
+
+typedef enum gno_terminator {
+    GNO_TERMINATOR_EXACT = 0, /* shadows as the flat facets cast them */
+    GNO_TERMINATOR_SMOOTH = 1 /* smooth-shaded polygons: Chiang, Li and Burley 2019, see docs/algorithm.md */
+} gno_terminator;
+
+typedef struct gno_render_def {
+    int lines;      /* sample lines per pixel row where the picture varies; default 12 */
+    int base_lines; /* sample lines everywhere; lines must be an odd multiple of it; default 4. Equal to lines: no refinement */
+    double refine_above; /* linear contrast within a pixel or between it and its upper and lower neighbour that calls for `lines`; default 0.02 */
+    int threads;    /* 0 (default): one per processor */
+    gno_terminator terminator;
+} gno_render_def;
+
+GNO_API gno_render_def gno_render_def_default(void);
+
+/* Seconds are wall-clock. Counts are exact and do not depend on the number of threads. */
+typedef struct gno_stats {
+    double prepare_seconds; /* planes, triangulations, normals */
+    double shadow_seconds;  /* per light: projection and tree of casters; 0 when kept from an earlier view */
+    double project_seconds; /* eye: projection, clipping, binning into tiles */
+    double scan_seconds;    /* visible spans, splitting, shading */
+    double total_seconds;
+    double polygons;        /* prepared polygons */
+    double lights;          /* after splitting area lights */
+    double tiles;
+    double spans;           /* visible spans found */
+    double columns;         /* (receiver, light) columns asked for, per tile */
+    double ones;            /* casters in those columns */
+    double columns_full;    /* columns that one caster covers wholly */
+    double shaded;          /* evaluations of the lighting model */
+    double refined_pixels;
+    size_t peak_memory;     /* bytes, by account of the context's allocator */
+} gno_stats;
+
+/* Renders the scene's camera view into rgb: height rows of width linear RGB triples, top row first (size from
+ * gno_scene_image). The same scene gives the same bytes for any number of threads. stats may be NULL.
+ * Errors: MEMORY, ARGUMENT, CANCELLED; rgb is then partly written. */
+GNO_API gno_status gno_render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats);
+
+/* ---- splitting one span by shadow polygons ---------------------------------------------------------------------- */
+
+/* Where one shadow polygon of the column meets the span's line: [x0,x1), and the share of light that passes the caster. */
+typedef struct gno_shadow_interval {
+    double x0, x1;
+    double transmission[3];
+} gno_shadow_interval;
+
+/* A part of a span over which the same casters lie: [x0,x1), and the product of their transmissions (1,1,1: lit). */
+typedef struct gno_span_part {
+    double x0, x1;
+    double light[3];
+} gno_span_part;
+
+/* Splits the span [x0,x1) by the four rules of the shadow pass (docs/algorithm.md): no shadow polygon, or none that
+ * meets the span: one lit part; wholly covered: one shaded part; partly covered: cut where shadow polygons begin and
+ * end, until every part is wholly covered or free. Neighbouring parts differ in light; parts are in order, leave no gap
+ * and have x0 < x1; casters that touch let nothing through between them. Intervals with x1 <= x0 count for nothing.
+ * `shadows` is sorted by x0 in place. parts needs room for 2 count + 1. Returns the number of parts: 0 for an
+ * empty span (x1 <= x0). No allocation, no failure; values must not be NaN. */
+GNO_API size_t gno_span_split(double x0, double x1, gno_shadow_interval *shadows, size_t count, gno_span_part *parts);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,50 @@
+/* gnomon_io.h -- files for gnomon: scenes and meshes in, pictures out. Library libgnomon-io.
+ *
+ * Needs libyaml, assimp, libpng and OpenEXRCore. Compiles as C89 to C17 and C++98 to C++17.
+ * All messages are kept in the context, as gnomon.h says: "FILE:LINE: key: what is wrong".
+ */
+#ifndef GNOMON_GNOMON_IO_H
+#define GNOMON_GNOMON_IO_H
+
+#include <gnomon/gnomon.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One `--set KEY=VALUE` override: key is a dotted path with indices (camera.eye, lights[0].intensity), value is YAML. */
+typedef struct gno_setting {
+    const char *key;
+    const char *value;
+} gno_setting;
+
+/* Reads a scene file (*.yaml, *.yml; docs/scene-format.md) or a mesh file alone (.obj .ply .stl .gltf .glb), which is
+ * shown from a default three-quarter view with a default light and a ground unless the file has its own camera and lights.
+ * Settings override values of the scene file, or, for a mesh file, camera, image, ambient and lights (see docs).
+ * Errors: MEMORY, FILE, INPUT, LIMIT. *scene is NULL then. */
+GNO_API gno_status gno_scene_load(gno_context *context, const char *path, const gno_setting *settings, size_t setting_count,
+                                  gno_scene **scene);
+
+/* Picture formats. The path "-" is standard output; otherwise the file appears whole or not at all (written beside and
+ * renamed). rgb holds height rows of width linear RGB triples, top row first. */
+typedef enum gno_pixel_depth { GNO_DEPTH_DEFAULT = 0, GNO_DEPTH_8 = 8, GNO_DEPTH_16 = 16, GNO_DEPTH_32 = 32 } gno_pixel_depth;
+
+typedef enum gno_picture_format { GNO_FORMAT_AUTO = 0, GNO_FORMAT_PNG, GNO_FORMAT_EXR, GNO_FORMAT_PFM } gno_picture_format;
+
+typedef struct gno_picture_def {
+    gno_picture_format format; /* AUTO: by the path's extension; "-" is then PNG */
+    gno_pixel_depth depth;     /* PNG: 8 (default) or 16 bit sRGB; EXR: 16 half (default) or 32 float; PFM: 32 */
+    double exposure;           /* factor on all values; default 1 */
+} gno_picture_def;
+
+GNO_API gno_picture_def gno_picture_def_default(void);
+
+/* Errors: MEMORY, ARGUMENT (unknown extension, size), FILE. */
+GNO_API gno_status gno_picture_write(gno_context *context, const char *path, const gno_picture_def *def, int width, int height,
+                                     const float *rgb);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
