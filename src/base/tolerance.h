@@ -1,0 +1,17 @@
+/* tolerance.h -- every tolerance of the engine, by name, with unit and reason. Place: base; knows nothing. */
+#ifndef GNOI_BASE_TOLERANCE_H
+#define GNOI_BASE_TOLERANCE_H
+
+/* Share of the scene's largest coordinate extent (with its offset from the origin): points of two planes nearer than this
+ * lie on one plane. Model files carry 6 to 7 significant digits, so faces meant to be coplanar differ by some 1e-7. */
+#define GNOI_COPLANAR 1e-6
+
+/* A polygon whose corners leave its plane by more than this share of its own extent is not planar (split into triangles);
+ * never stricter than GNOI_COPLANAR of the scene. */
+#define GNOI_PLANAR 1e-4
+
+/* A polygon whose area is less than this share of its perimeter squared has no area: below it a normal computed in
+ * double precision carries no information. */
+#define GNOI_DEGENERATE 1e-12
+
+#endif

@@ -1,0 +1,114 @@
+/* scene.h -- the scene's storage: flat arrays as the caller gave them, and the prepared polygons made from them.
+ *
+ * Place in the data flow: gno_scene_add_* -> gno_scene (this) -> gnoi_scene_prepare -> prepared polygons -> shadow, scan.
+ * Invariants: every index in the corner arrays is in range; all numbers are finite; ring offsets never decrease;
+ * `prepared` is valid exactly while prepared.valid is set, which every change of geometry or materials clears.
+ */
+#ifndef GNOI_SCENE_SCENE_H
+#define GNOI_SCENE_SCENE_H
+
+#include "base/context.h"
+#include "base/vec.h"
+
+typedef struct gnoi_object {
+    char *name; /* gnoi_malloc of name_size bytes, or NULL */
+    size_t name_size;
+    size_t first_polygon, polygon_count;
+    int shading; /* a gno_shading or -1 */
+    int average_normals;
+    double crease;
+    gno_weighting weighting;
+    int priority;
+} gnoi_object;
+
+typedef struct gnoi_named_light {
+    gno_light light;
+    char *name; /* gnoi_malloc of name_size bytes; never NULL */
+    size_t name_size;
+} gnoi_named_light;
+
+/* A polygon ready for the passes: planar, with area. Two cache lines hold three; keep it at 64 bytes. */
+typedef struct gnoi_poly {
+    double n[3], d;        /* unit normal and offset: n.x + d = 0; n follows the winding of the outer ring */
+    uint32_t ring;         /* first of its rings in prepared.ring_corner */
+    uint32_t corner;       /* = prepared.ring_corner[ring] */
+    uint32_t corner_count; /* of all its rings */
+    uint32_t triangle;     /* first of its corner_count + 2 (ring_count - 1) - 2 triangles in prepared.triangles,
+                              GNOI_NONE where no triangulation is kept (three corners, or not smooth) */
+    uint32_t source;       /* polygon number in the scene */
+    uint32_t ring_count : 24;
+    uint32_t shading : 4; /* gno_shading */
+    uint32_t two_sided : 1;
+    uint32_t opaque : 1; /* transmission is zero in all channels */
+    uint16_t material;
+    int16_t priority;
+} gnoi_poly;
+
+#define GNOI_NONE 0xffffffffu
+
+typedef struct gnoi_prepared {
+    int valid;
+    size_t poly_count, poly_capacity;
+    gnoi_poly *polys;
+    size_t ring_count, ring_capacity;
+    uint32_t *ring_corner; /* ring_count+1 offsets into corner arrays; ring_capacity counts its elements */
+    size_t corner_count, corner_capacity;
+    uint32_t *corner_vertex;    /* index into scene positions */
+    uint32_t *corner_normal;    /* index into normals, GNOI_NONE where the polygon is not smooth (NULL: no smooth polygon at all) */
+    size_t normal_count, normal_capacity;
+    float (*normals)[3];        /* unit */
+    size_t triangle_count, triangle_capacity;
+    uint32_t (*triangles)[3];   /* indices into corner arrays */
+    double lower[3], upper[3];  /* bounds of all prepared polygons' corners (zeros without any) */
+    double scale;               /* largest absolute coordinate or extent, the unit of relative tolerances; 1 without polygons */
+    gno_scene_problems problems;
+} gnoi_prepared;
+
+typedef struct gnoi_shadow_cache gnoi_shadow_cache; /* owned by shadow/; freed through the function below */
+
+struct gno_scene {
+    gno_context *context;
+    size_t vertex_count, vertex_capacity;
+    double (*positions)[3];
+    size_t normal_count, normal_capacity;
+    double (*normals)[3];
+    size_t texcoord_count, texcoord_capacity;
+    double (*texcoords)[2];
+    size_t polygon_count, polygon_capacity; /* elements used and held of polygon_start are one more */
+    unsigned *polygon_start;
+    int *polygon_material;
+    int *polygon_object;
+    size_t ring_count, ring_capacity;
+    unsigned *ring_start;
+    size_t corner_count, corner_capacity;
+    int *corner_vertex, *corner_normal, *corner_texcoord;
+    size_t object_count, object_capacity;
+    gnoi_object *objects;
+    size_t material_count, material_capacity;
+    gno_material *materials;
+    size_t light_count, light_capacity;
+    gnoi_named_light *lights;
+    gno_camera camera;
+    gno_image_def image;
+    double ambient[3];
+    gnoi_prepared prepared;
+    gnoi_shadow_cache *shadows; /* kept from view to view; NULL until a view needs it */
+    void (*free_shadows)(gno_context *context, gnoi_shadow_cache *shadows); /* set by whoever fills `shadows` */
+};
+
+/* Makes scene->prepared valid: planes, splitting of polygons that are not planar, triangulations of smooth n-gons, normals.
+ * Warns once with counts of degenerate and non-planar polygons. */
+gno_status gnoi_scene_prepare(gno_scene *scene, int threads);
+
+/* Drops what was derived from geometry, materials or lights; every change of them calls it. */
+void gnoi_scene_changed(gno_scene *scene);
+void gnoi_prepared_free(gno_context *context, gnoi_prepared *prepared);
+
+/* Triangulates a planar polygon with holes by ear clipping (holes joined to the outer ring by bridges), in the plane
+ * coordinate pair `axis_u`, `axis_v` of its dominant projection. Works on corner indices of prepared.ring_corner's rings; writes
+ * corner_count + 2 (ring_count - 1) - 2 triples to `triangles` (degenerate ones where the polygon is not simple). */
+gno_status gnoi_triangulate(gno_context *context, const double (*positions)[3], const uint32_t *corner_vertex,
+                            const uint32_t *ring_corner, uint32_t ring_count, const double normal[3],
+                            uint32_t (*triangles)[3]);
+
+#endif
