@@ -1,0 +1,225 @@
+# gnomon: library, file library, command line tool and tests. GNU make.
+#
+#   make            libraries and tool in build/
+#   make demo       what is missing from the system, then the above, then a picture of every scene in out/
+#   make test       the same, then all tests; the last line counts them
+#   make bench      measurements        make check-asan     tests under the address and undefined-behaviour sanitizers
+#   make install    PREFIX, DESTDIR     make check-headers  the public headers in every C and C++ they promise
+
+# ---- yours to change, here or on the command line ----------------------------------------------------------------
+ifeq ($(origin CC),default)
+CC      := gcc
+endif
+CFLAGS  ?= -O3
+CPPFLAGS ?=
+LDFLAGS ?=
+PREFIX  ?= /usr/local
+DESTDIR ?=
+BINDIR  ?= $(PREFIX)/bin
+LIBDIR  ?= $(PREFIX)/lib
+INCLUDEDIR ?= $(PREFIX)/include
+PKGCONFIG ?= pkg-config
+BUILD   ?= build
+OUT     ?= out
+
+# ---- flags the project needs ----------------------------------------------------------------------------------------
+# The same input has to give the same bytes with every compiler: no contraction to fused multiply-adds, no -ffast-math,
+# no -march.
+SANITIZE :=
+LANGUAGE := -std=c11 -ffp-contract=off -pthread -D_POSIX_C_SOURCE=200809L -Iinclude -Isrc
+WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+TEST_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow
+COMPILE = $(CC) $(CPPFLAGS) $(CFLAGS) $(LANGUAGE) $(SANITIZE) -fvisibility=hidden -fPIC -MMD -MP
+LINK = $(CC) $(CFLAGS) $(SANITIZE) -pthread $(LDFLAGS)
+
+# OpenEXRCore is the C part of OpenEXR; its pkg-config module would link all the C++ libraries too, so only the include
+# path is taken from there.
+pkg = $(shell $(PKGCONFIG) $(1) 2>/dev/null || echo $(2))
+IO_CFLAGS := $(call pkg,--cflags yaml-0.1 assimp libpng,-I/usr/include/libpng16) \
+             $(filter -I%,$(call pkg,--cflags OpenEXR,-I/usr/include/OpenEXR -I/usr/include/Imath))
+IO_LIBS   := $(call pkg,--libs yaml-0.1 assimp libpng,-lyaml -lassimp -lpng) -lOpenEXRCore
+TEST_LIBS := $(call pkg,--libs cmocka,-lcmocka)
+
+VERSION := $(shell sed -n 's/^.define GNO_VERSION_[A-Z]* \([0-9]*\)/\1/p' include/gnomon/gnomon.h | paste -sd.)
+SOMAJOR := $(firstword $(subst ., ,$(VERSION)))
+
+# ---- files -------------------------------------------------------------------------------------------------------------
+ENGINE_DIRS := base scene project clip shadow scan shade engine
+ENGINE_SRC := $(sort $(foreach d,$(ENGINE_DIRS),$(wildcard src/$(d)/*.c)))
+IO_SRC     := $(sort $(wildcard src/io/*.c))
+CLI_SRC    := $(sort $(wildcard src/cli/*.c))
+SUPPORT_SRC := $(sort $(wildcard tests/support/*.c))
+TEST_SRC   := $(sort $(wildcard tests/unit/test_*.c tests/property/test_*.c tests/pictures/test_*.c tests/robustness/test_*.c))
+TEST_SCRIPTS := $(sort $(wildcard tests/test_*.sh tests/*/test_*.sh))
+SCENES     := $(sort $(wildcard scenes/*.yaml))
+
+ENGINE_OBJ := $(ENGINE_SRC:%.c=$(BUILD)/obj/%.o)
+IO_OBJ     := $(IO_SRC:%.c=$(BUILD)/obj/%.o)
+CLI_OBJ    := $(CLI_SRC:%.c=$(BUILD)/obj/%.o)
+SUPPORT_OBJ := $(SUPPORT_SRC:%.c=$(BUILD)/obj/%.o)
+TEST_OBJ   := $(TEST_SRC:%.c=$(BUILD)/obj/%.o)
+TEST_BIN   := $(TEST_SRC:%.c=$(BUILD)/%)
+
+STATIC := $(BUILD)/libgnomon.a $(BUILD)/libgnomon-io.a
+SHARED := $(BUILD)/libgnomon.so $(BUILD)/libgnomon-io.so
+TOOL   := $(if $(CLI_SRC),$(BUILD)/gnomon)
+
+.PHONY: all demo demo-pictures test test-run check-asan asan-run bench install uninstall deps clean check-headers FORCE
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+all: $(STATIC) $(SHARED) $(TOOL) $(BUILD)/gnomon.pc $(BUILD)/gnomon-io.pc
+
+# Recipes that start with installing packages build in a make of their own, which then sees what was installed.
+JOBS = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
+SUBMAKE = $(MAKE) --no-print-directory
+
+# ---- building --------------------------------------------------------------------------------------------------------
+# Everything compiled depends on this file, which changes only when compiler or flags do.
+$(BUILD)/flags: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' '$(COMPILE) | $(LINK) | $(IO_CFLAGS) | $(IO_LIBS)' | cmp -s - $@ || \
+	 printf '%s\n' '$(COMPILE) | $(LINK) | $(IO_CFLAGS) | $(IO_LIBS)' > $@
+
+# A list of objects, so that a source file that went away leaves the library as well.
+$(BUILD)/engine.list: OBJECTS = $(ENGINE_OBJ)
+$(BUILD)/io.list: OBJECTS = $(IO_OBJ)
+$(BUILD)/engine.list $(BUILD)/io.list: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' $(OBJECTS) | cmp -s - $@ || printf '%s\n' $(OBJECTS) > $@
+
+$(BUILD)/obj/src/io/%.o: EXTRA = $(IO_CFLAGS)
+$(BUILD)/obj/src/%.o: src/%.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(COMPILE) $(WARNINGS) $(EXTRA) -c $< -o $@
+
+$(BUILD)/obj/tests/%.o: tests/%.c $(BUILD)/flags
+	@mkdir -p $(@D)
+	$(COMPILE) $(TEST_WARNINGS) $(IO_CFLAGS) -Itests -c $< -o $@
+
+$(BUILD)/libgnomon.a: $(ENGINE_OBJ) $(BUILD)/engine.list
+	rm -f $@ && $(AR) rcs $@ $(ENGINE_OBJ)
+
+$(BUILD)/libgnomon-io.a: $(IO_OBJ) $(BUILD)/io.list
+	rm -f $@ && $(AR) rcs $@ $(IO_OBJ)
+
+$(BUILD)/libgnomon.so.$(VERSION): $(ENGINE_OBJ) $(BUILD)/engine.list
+	$(LINK) -shared -Wl,-soname,libgnomon.so.$(SOMAJOR) $(ENGINE_OBJ) -o $@ -lm
+
+$(BUILD)/libgnomon-io.so.$(VERSION): $(IO_OBJ) $(BUILD)/io.list $(BUILD)/libgnomon.so
+	$(LINK) -shared -Wl,-soname,libgnomon-io.so.$(SOMAJOR) $(IO_OBJ) -o $@ -L$(BUILD) -lgnomon $(IO_LIBS) -lm
+
+$(SHARED): %.so: %.so.$(VERSION)
+	ln -sf $(<F) $*.so.$(SOMAJOR)
+	ln -sf $(*F).so.$(SOMAJOR) $@
+
+$(BUILD)/gnomon: $(CLI_OBJ) $(STATIC)
+	$(LINK) $(CLI_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm
+
+$(TEST_BIN): $(BUILD)/%: $(BUILD)/obj/%.o $(SUPPORT_OBJ) $(STATIC)
+	@mkdir -p $(@D)
+	$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(TEST_LIBS) $(IO_LIBS) -lm
+
+$(BUILD)/gnomon.pc: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' 'Name: gnomon' \
+	 'Description: polygon scenes with exact hidden surfaces and exact shadows' 'Version: $(VERSION)' \
+	 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lgnomon' 'Libs.private: -lm -pthread' > $@
+
+$(BUILD)/gnomon-io.pc: FORCE
+	@mkdir -p $(@D)
+	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' 'Name: gnomon-io' \
+	 'Description: scene files in and pictures out for gnomon' 'Version: $(VERSION)' 'Requires: gnomon' \
+	 'Requires.private: yaml-0.1 assimp libpng' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lgnomon-io' \
+	 'Libs.private: -lOpenEXRCore -lm' > $@
+
+-include $(patsubst %.o,%.d,$(ENGINE_OBJ) $(IO_OBJ) $(CLI_OBJ) $(SUPPORT_OBJ) $(TEST_OBJ))
+
+# ---- pictures --------------------------------------------------------------------------------------------------------
+demo:
+	+@$(SUBMAKE) deps
+	+@echo 'Building the libraries and the tool in $(BUILD)/ ...'
+	+@$(SUBMAKE) $(JOBS) all
+	+@$(SUBMAKE) demo-pictures
+
+demo-pictures: all
+	@mkdir -p $(OUT)
+	@if [ -z '$(SCENES)' ]; then echo 'There is no scene in scenes/ yet.'; fi
+	@set -e; for scene in $(SCENES); do \
+	  picture=$(OUT)/$$(basename $$scene .yaml).png; \
+	  echo "$(BUILD)/gnomon render $$scene -o $$picture"; \
+	  $(BUILD)/gnomon render $$scene -o $$picture; \
+	done
+	@if [ -n '$(SCENES)' ]; then echo 'The pictures are in $(OUT)/.'; fi
+
+# ---- tests -----------------------------------------------------------------------------------------------------------
+test:
+	+@$(SUBMAKE) deps
+	+@$(SUBMAKE) $(JOBS) all tests
+	+@$(SUBMAKE) test-run
+
+.PHONY: tests
+tests: $(TEST_BIN)
+
+test-run: all tests
+	@CC='$(CC)' BUILD='$(BUILD)' GNOMON='$(abspath $(BUILD)/gnomon)' \
+	 sh tests/run.sh $(BUILD)/logs $(TEST_BIN) $(TEST_SCRIPTS) tests/check-headers.sh
+
+check-headers: $(BUILD)/libgnomon.so $(BUILD)/libgnomon-io.so
+	@CC='$(CC)' BUILD='$(BUILD)' sh tests/check-headers.sh
+
+# Only the cmocka programs: they reach every part of the libraries, and the tool is a thin layer on top.
+check-asan:
+	+@$(SUBMAKE) $(JOBS) BUILD=build/asan CFLAGS='-O1 -g -fno-omit-frame-pointer' \
+	  SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=all' asan-run
+
+asan-run: tests
+	@BUILD='$(BUILD)' ASAN_OPTIONS=allocator_may_return_null=1:$$ASAN_OPTIONS \
+	 sh tests/run.sh $(BUILD)/logs $(TEST_BIN)
+
+bench: all
+	@if [ -f tests/bench/run.sh ]; then GNOMON='$(abspath $(BUILD)/gnomon)' bash tests/bench/run.sh; \
+	 else for script in tests/bench/*.sh; do \
+	   if [ -f "$$script" ]; then GNOMON='$(abspath $(BUILD)/gnomon)' bash "$$script" || exit 1; fi; \
+	 done; fi
+
+# ---- system packages -----------------------------------------------------------------------------------------------
+PACKAGES := $(if $(filter gcc clang,$(CC)),$(CC)) libc6-dev make pkg-config \
+            libyaml-dev libassimp-dev libpng-dev libopenexr-dev libcmocka-dev
+
+deps:
+	@if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then \
+	  echo 'deps: this is no Debian or Ubuntu; the build needs what they call: $(PACKAGES)'; exit 0; fi; \
+	missing=; for package in $(PACKAGES); do \
+	  dpkg-query -W -f='$${Status}' $$package 2>/dev/null | grep -q '^install ok installed' || missing="$$missing $$package"; \
+	done; \
+	if [ -z "$$missing" ]; then echo 'deps: every package the build needs is installed.'; exit 0; fi; \
+	echo "deps: installing with apt-get:$$missing"; \
+	sudo=; if [ "$$(id -u)" != 0 ]; then \
+	  command -v sudo >/dev/null || { echo "deps: not root and no sudo; please install:$$missing" >&2; exit 1; }; \
+	  echo 'deps: sudo may ask for your password.'; sudo=sudo; fi; \
+	$$sudo apt-get update -q && \
+	$$sudo env DEBIAN_FRONTEND=noninteractive apt-get install -y -q --no-install-recommends $$missing
+
+# ---- installing ----------------------------------------------------------------------------------------------------
+install: all
+	install -d '$(DESTDIR)$(BINDIR)' '$(DESTDIR)$(LIBDIR)/pkgconfig' '$(DESTDIR)$(INCLUDEDIR)/gnomon'
+	install -m 755 $(BUILD)/gnomon '$(DESTDIR)$(BINDIR)'
+	install -m 644 include/gnomon/gnomon.h include/gnomon/gnomon_io.h '$(DESTDIR)$(INCLUDEDIR)/gnomon'
+	install -m 644 $(STATIC) '$(DESTDIR)$(LIBDIR)'
+	install -m 755 $(SHARED:%=%.$(VERSION)) '$(DESTDIR)$(LIBDIR)'
+	for lib in libgnomon libgnomon-io; do \
+	  ln -sf $$lib.so.$(VERSION) '$(DESTDIR)$(LIBDIR)'/$$lib.so.$(SOMAJOR) && \
+	  ln -sf $$lib.so.$(SOMAJOR) '$(DESTDIR)$(LIBDIR)'/$$lib.so || exit 1; done
+	install -m 644 $(BUILD)/gnomon.pc $(BUILD)/gnomon-io.pc '$(DESTDIR)$(LIBDIR)/pkgconfig'
+
+uninstall:
+	rm -f '$(DESTDIR)$(BINDIR)/gnomon'
+	rm -f '$(DESTDIR)$(INCLUDEDIR)/gnomon/gnomon.h' '$(DESTDIR)$(INCLUDEDIR)/gnomon/gnomon_io.h'
+	-rmdir '$(DESTDIR)$(INCLUDEDIR)/gnomon'
+	for lib in libgnomon libgnomon-io; do \
+	  rm -f '$(DESTDIR)$(LIBDIR)'/$$lib.a '$(DESTDIR)$(LIBDIR)'/$$lib.so '$(DESTDIR)$(LIBDIR)'/$$lib.so.$(SOMAJOR) \
+	    '$(DESTDIR)$(LIBDIR)'/$$lib.so.$(VERSION) '$(DESTDIR)$(LIBDIR)'/pkgconfig/$${lib#lib}.pc; done
+
+clean:
+	rm -rf $(BUILD) $(OUT)
