@@ -1,0 +1,59 @@
+/* view.h -- the eye as a projection centre: scene space to picture coordinates and back.
+ *
+ * Place in the data flow: camera and picture size -> gnoi_view -> projected vertices, planes of nearness, scene points.
+ * Picture coordinates: x right, y down, in pixels from the picture's top left corner. "Nearness" z grows towards the
+ * viewer and is linear over the picture on every plane: 1/w for a perspective view (w the depth along the view
+ * direction), -depth for an orthographic one (Blinn, "Hyperbolic interpolation", 1992).
+ */
+#ifndef GNOI_PROJECT_VIEW_H
+#define GNOI_PROJECT_VIEW_H
+
+#include "base/vec.h"
+#include <gnomon/gnomon.h>
+
+/* A linear form over scene space: a.P + b. */
+typedef struct gnoi_form {
+    vec3 a;
+    double b;
+} gnoi_form;
+
+static inline double gnoi_form_at(const gnoi_form *f, vec3 p) { return v3_dot(f->a, p) + f->b; }
+
+typedef struct gnoi_view {
+    int orthographic;
+    int width, height;
+    vec3 eye, forward, right, up; /* orthonormal */
+    double s;                     /* pixels per unit at depth 1 (perspective) or anywhere (orthographic) */
+    gnoi_form x, y, w;            /* homogeneous picture coordinates; w is the constant 1 for an orthographic view */
+    gnoi_form depth;              /* along the view direction from the eye */
+    double near_depth;            /* what lies nearer is cut away */
+} gnoi_view;
+
+/* A linear function over the picture: fx x + fy y + f0. */
+typedef struct gnoi_screen_plane {
+    double fx, fy, f0;
+} gnoi_screen_plane;
+
+static inline double gnoi_plane_at(const gnoi_screen_plane *p, double x, double y) { return p->fx * x + p->fy * y + p->f0; }
+
+/* scale: the scene's size, the unit of near_depth. The camera must have been validated. */
+gnoi_view gnoi_view_make(const gno_camera *camera, const gno_image_def *image, double scale);
+
+/* Signed distance of the eye from the plane n.P + d = 0 (perspective), or minus the cosine between n and the view direction
+ * (orthographic): its sign tells which side the viewer is on, positive on n's side. */
+double gnoi_view_side(const gnoi_view *view, const double n[3], double d);
+
+/* Nearness of the plane over the picture; `side` is gnoi_view_side's, not zero. */
+gnoi_screen_plane gnoi_view_nearness(const gnoi_view *view, const double n[3], double d, double side);
+
+/* The scene point seen at picture point (x,y) with nearness z (z > 0 for a perspective view). */
+static inline vec3 gnoi_view_point(const gnoi_view *view, double x, double y, double z)
+{
+    double u = (x - 0.5 * view->width) / view->s, v = (y - 0.5 * view->height) / view->s;
+    vec3 across = v3_sub(v3_scale(view->right, u), v3_scale(view->up, v));
+    if (view->orthographic)
+        return v3_add(v3_mad(view->eye, view->forward, -z), across);
+    return v3_mad(view->eye, v3_add(view->forward, across), 1 / z);
+}
+
+#endif

@@ -1,0 +1,169 @@
+/* frame.c -- see frame.h. */
+#include "shadow/frame.h"
+#include <float.h>
+
+/* A point light's single plane serves while the scene stays within this slope from its axis. */
+#define CONE_SLOPE 2.5
+#define FACE_STEP 4.0
+#define SLACK 2e-6
+/* A cut turns n points into at most 3n/2: 8, 12, 18, 27, 40. */
+#define CUT_POINTS 40
+
+static vec3 perpendicular_to(vec3 a)
+{
+    vec3 e = fabs(a.x) <= fabs(a.y) && fabs(a.x) <= fabs(a.z) ? v3(1, 0, 0) : fabs(a.y) <= fabs(a.z) ? v3(0, 1, 0) : v3(0, 0, 1);
+    return v3_unit(v3_cross(a, e));
+}
+
+static void set_axes(gnoi_frame *frame, vec3 depth)
+{
+    frame->axis[2] = depth;
+    frame->axis[0] = perpendicular_to(depth);
+    frame->axis[1] = v3_cross(depth, frame->axis[0]);
+}
+
+static int within_cone(const gnoi_frame *frame, const double lower[3], const double upper[3])
+{
+    for (int i = 0; i < 8; i++) {
+        vec3 p = v3(i & 1 ? upper[0] : lower[0], i & 2 ? upper[1] : lower[1], i & 4 ? upper[2] : lower[2]);
+        vec3 q = v3_sub(p, frame->origin);
+        double z = v3_dot(q, frame->axis[2]);
+        if (!(z > 0) || fabs(v3_dot(q, frame->axis[0])) > CONE_SLOPE * z || fabs(v3_dot(q, frame->axis[1])) > CONE_SLOPE * z)
+            return 0;
+    }
+    return 1;
+}
+
+gnoi_frame gnoi_frame_make(const gnoi_lamp *lamp, const double lower[3], const double upper[3])
+{
+    gnoi_frame frame;
+    vec3 centre = v3_scale(v3_add(v3_from(lower), v3_from(upper)), 0.5);
+    double size = v3_length(v3_sub(v3_from(upper), v3_from(lower)));
+    frame.parallel = lamp->directional;
+    frame.faces = 1;
+    frame.origin = lamp->directional ? centre : lamp->position;
+    if (lamp->directional) {
+        set_axes(&frame, v3_scale(lamp->to_light, -1));
+        frame.slack = SLACK * size;
+        frame.slack_depth = SLACK * size;
+        return frame;
+    }
+    set_axes(&frame, v3_unit(v3_sub(centre, frame.origin)));
+    frame.slack = SLACK * CONE_SLOPE;
+    frame.slack_depth = SLACK * (size + v3_length(v3_sub(centre, frame.origin)));
+    if (within_cone(&frame, lower, upper))
+        return frame;
+    frame.faces = 6;
+    frame.slack = SLACK * FACE_STEP;
+    return frame;
+}
+
+static void box_clear(gnoi_lbox *box)
+{
+    box->u0 = box->v0 = box->z0 = FLT_MAX;
+    box->u1 = box->v1 = box->z1 = -FLT_MAX;
+}
+
+static void box_add(gnoi_lbox *box, double u, double v, double z)
+{
+    float fu = (float)u, fv = (float)v, fz = (float)z;
+    box->u0 = fu < box->u0 ? fu : box->u0;
+    box->u1 = fu > box->u1 ? fu : box->u1;
+    box->v0 = fv < box->v0 ? fv : box->v0;
+    box->v1 = fv > box->v1 ? fv : box->v1;
+    box->z0 = fz < box->z0 ? fz : box->z0;
+    box->z1 = fz > box->z1 ? fz : box->z1;
+}
+
+static void box_grow(gnoi_lbox *box, const gnoi_frame *frame)
+{
+    float s = (float)frame->slack, t = (float)frame->slack_depth;
+    box->u0 -= s;
+    box->v0 -= s;
+    box->u1 += s;
+    box->v1 += s;
+    box->z0 -= t;
+    box->z1 += t;
+}
+
+/* (u axis, v axis, depth) of a cube face: faces 0..5 look along +x, -x, +y, -y, +z, -z. */
+static vec3 to_face(vec3 q, int face)
+{
+    double s = face & 1 ? -1 : 1;
+    switch (face >> 1) {
+    case 0: return v3(q.y, q.z, s * q.x);
+    case 1: return v3(q.z, q.x, s * q.y);
+    default: return v3(q.x, q.y, s * q.z);
+    }
+}
+
+/* The value that is >= 0 inside one side plane of the face's pyramid. */
+static double pyramid_side(vec3 q, int side)
+{
+    switch (side) {
+    case 0: return q.z - q.x;
+    case 1: return q.z + q.x;
+    case 2: return q.z - q.y;
+    default: return q.z + q.y;
+    }
+}
+
+static int clip_pyramid_side(const vec3 *in, int count, int side, vec3 *out)
+{
+    int n = 0;
+    for (int i = 0; i < count; i++) {
+        vec3 a = in[i], b = in[i + 1 < count ? i + 1 : 0];
+        double sa = pyramid_side(a, side), sb = pyramid_side(b, side);
+        if (sa >= 0)
+            out[n++] = a;
+        if ((sa > 0 && sb < 0) || (sa < 0 && sb > 0))
+            out[n++] = v3_mad(a, v3_sub(b, a), sa / (sa - sb));
+    }
+    return n;
+}
+
+static int face_box(const gnoi_frame *frame, const vec3 *relative, int count, int face, gnoi_lbox *box)
+{
+    vec3 ring[2][CUT_POINTS];
+    int n = count, inside = 1;
+    for (int i = 0; i < count; i++) {
+        ring[0][i] = to_face(relative[i], face);
+        for (int side = 0; side < 4; side++)
+            inside &= pyramid_side(ring[0][i], side) >= 0;
+    }
+    for (int side = 0; side < 4 && !inside && n > 0; side++)
+        n = clip_pyramid_side(ring[side & 1], n, side, ring[~side & 1]);
+    if (n == 0)
+        return 0;
+    box_clear(box);
+    for (int i = 0; i < n; i++) {
+        vec3 q = ring[0][i];
+        if (q.z > 0)
+            box_add(box, q.x / q.z + FACE_STEP * face, q.y / q.z, q.z);
+        else
+            box_add(box, FACE_STEP * face, 0, 0);
+    }
+    box_grow(box, frame);
+    return 1;
+}
+
+int gnoi_frame_boxes(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lbox boxes[6])
+{
+    vec3 relative[GNOI_FRAME_POINTS];
+    int n = 0;
+    if (frame->faces == 1) {
+        box_clear(&boxes[0]);
+        for (int i = 0; i < count; i++) {
+            double u, v, z;
+            gnoi_frame_map(frame, points[i], &u, &v, &z);
+            box_add(&boxes[0], u, v, z);
+        }
+        box_grow(&boxes[0], frame);
+        return 1;
+    }
+    for (int i = 0; i < count; i++)
+        relative[i] = v3_sub(points[i], frame->origin);
+    for (int face = 0; face < 6; face++)
+        n += face_box(frame, relative, count, face, &boxes[n]);
+    return n;
+}

@@ -1,0 +1,71 @@
+/* frame.h -- the plane (or planes) onto which a light projects the scene, for bounding tests.
+ *
+ * Place in the data flow: lights -> gnoi_lamp + gnoi_frame -> boxes of polygons on the light's plane -> tree, columns.
+ * A directional light projects in parallel onto one plane; a point light gnomonically, onto one plane when the whole
+ * scene lies well within one cone before it, onto the six faces of a cube otherwise. Straight stays straight, so the
+ * box of a polygon's projected corners bounds the polygon. Faces stand side by side in u, FACE_STEP apart.
+ * Invariant: a box contains the exact projection (corners are rounded outwards).
+ */
+#ifndef GNOI_SHADOW_FRAME_H
+#define GNOI_SHADOW_FRAME_H
+
+#include "base/vec.h"
+#include <gnomon/gnomon.h>
+
+/* One light as the passes see it: a point or a direction; area lights are many of these. */
+typedef struct gnoi_lamp {
+    int directional;
+    int spot;
+    vec3 position;  /* point, spot */
+    vec3 to_light;  /* directional: unit vector towards the light */
+    vec3 axis;      /* spot: unit, the way light travels */
+    double cos_half_angle; /* spot */
+    double intensity[3];
+    gno_falloff falloff;
+    double falloff_k;
+    int distance_from_viewer;
+} gnoi_lamp;
+
+/* Positive on the lit side of the plane n.P + d = 0: the lamp's height over it (directional: the cosine). */
+static inline double gnoi_lamp_side(const gnoi_lamp *lamp, const double n[3], double d)
+{
+    vec3 nn = v3_from(n);
+    return lamp->directional ? v3_dot(nn, lamp->to_light) : v3_dot(nn, lamp->position) + d;
+}
+
+/* A box on the light's plane: [u0,u1] x [v0,v1], and depths z0..z1 from the light. */
+typedef struct gnoi_lbox {
+    float u0, u1, v0, v1, z0, z1;
+} gnoi_lbox;
+
+typedef struct gnoi_frame {
+    int parallel;
+    int faces; /* 1 or 6 */
+    vec3 origin;         /* the light's position, or the scene's centre for a parallel frame */
+    vec3 axis[3];        /* u, v, depth of a one-face frame; orthonormal */
+    double slack, slack_depth; /* by how much boxes grow on each side against rounding, in units of u and of depth */
+} gnoi_frame;
+
+/* lower, upper: bounds of the scene. */
+gnoi_frame gnoi_frame_make(const gnoi_lamp *lamp, const double lower[3], const double upper[3]);
+
+/* Box of one point of a one-face frame. */
+static inline void gnoi_frame_map(const gnoi_frame *frame, vec3 p, double *u, double *v, double *z)
+{
+    vec3 q = v3_sub(p, frame->origin);
+    double x = v3_dot(q, frame->axis[0]), y = v3_dot(q, frame->axis[1]);
+    *z = v3_dot(q, frame->axis[2]);
+    if (!frame->parallel) {
+        double k = 1 / *z;
+        x *= k;
+        y *= k;
+    }
+    *u = x;
+    *v = y;
+}
+
+/* Boxes of the ring of `count` points (at most GNOI_FRAME_POINTS), one for each face it reaches. Returns their number. */
+#define GNOI_FRAME_POINTS 8
+int gnoi_frame_boxes(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lbox boxes[6]);
+
+#endif
