@@ -1,0 +1,51 @@
+/* oracle.h -- the slow, obvious twin of the engine: one ray a sample, every polygon tried, every caster tried.
+ *
+ * It sees a scene only through the public getters and shares no code with the engine. What it computes is
+ * docs' model: for a point of the picture the nearest polygon along its ray, for each light the product of the
+ * transmissions of all polygons between, and the lighting formula in double precision.
+ *
+ * Bounds of its honesty: polygons must be planar; interpolated shading is meant for triangles (convex polygons are
+ * taken as fans); where a smooth polygon has no normals, those of its object's polygons are averaged by area.
+ */
+#ifndef TESTS_SUPPORT_ORACLE_H
+#define TESTS_SUPPORT_ORACLE_H
+
+#include <gnomon/gnomon.h>
+
+typedef struct oracle oracle;
+
+/* What one ray finds. */
+typedef struct oracle_sample {
+    long polygon;        /* number in the scene, -1: background */
+    unsigned long state; /* hash of what every light sends through to the point */
+    double point[3];
+    double rgb[3];
+} oracle_sample;
+
+/* What the rays of one pixel find. */
+typedef struct oracle_pixel {
+    double rgb[3];            /* mean */
+    double lower[3], upper[3]; /* range over the samples */
+    long polygon;             /* of the first sample */
+    unsigned long state;
+    int uniform;              /* all samples agree in polygon and state */
+} oracle_pixel;
+
+/* The scene must live and stay unchanged as long as the oracle. NULL when memory fails. */
+oracle *oracle_create(gno_scene *scene);
+void oracle_destroy(oracle *o);
+
+/* Looks through the picture point (x,y), in pixels from the top left corner. */
+oracle_sample oracle_look(const oracle *o, double x, double y);
+
+/* The pixel (px,py) by n x n samples, one at a random place of each cell of a grid; the same seed gives the same places. */
+oracle_pixel oracle_look_pixel(const oracle *o, int px, int py, int n, unsigned seed);
+
+/* All pixels, row by row; pixels has width x height elements. */
+void oracle_picture(const oracle *o, int n, unsigned seed, oracle_pixel *pixels);
+
+/* Polygons with area, and lights after area lights are split: their product is the cost of a sample. */
+size_t oracle_polygons(const oracle *o);
+size_t oracle_lights(const oracle *o);
+
+#endif
