@@ -14,4 +14,14 @@
  * double precision carries no information. */
 #define GNOI_DEGENERATE 1e-12
 
+/* Sine of the angle below which two directions count as parallel: a frame built from them would keep 7 digits at most. */
+#define GNOI_PARALLEL 1e-9
+
+/* Added to the cosine of an angle held against the crease angle, so that faces of a cube meet at 90 degrees, not at a
+ * rounding error more. */
+#define GNOI_CREASE 1e-9
+
+/* A sum of normals shorter than this share of its terms' lengths has cancelled: its direction is rounding error. */
+#define GNOI_CANCELLED 1e-9
+
 #endif

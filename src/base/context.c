@@ -1,0 +1,257 @@
+/* context.c -- the allocator, account, message and log behind gno_context.
+ *
+ * Place: the root; everything else allocates, fails and warns through here.
+ * Invariants: `used` is the sum of the sizes of all blocks handed out and not yet freed, the context's own included;
+ * `peak` is the largest value `used` ever had. Both are atomic, for worker threads allocate too; the message and the
+ * callbacks belong to the calling thread alone.
+ * Source: allocator with user and old size after Lua's lua_Alloc; message kept in a fixed buffer, so failing cannot fail.
+ */
+#include "base/context.h"
+
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+#define MESSAGE_SIZE 1024
+#define FIRST_CAPACITY 16
+
+struct gno_context {
+    gno_context_def def;
+    atomic_size_t used;
+    atomic_size_t peak;
+    char message[MESSAGE_SIZE];
+};
+
+/* ---- version and status --------------------------------------------------------------------------------------- */
+
+#define TEXT_OF(x) #x
+#define VERSION_TEXT(major, minor, patch) TEXT_OF(major) "." TEXT_OF(minor) "." TEXT_OF(patch)
+
+const char *gno_version(void)
+{
+    return VERSION_TEXT(GNO_VERSION_MAJOR, GNO_VERSION_MINOR, GNO_VERSION_PATCH);
+}
+
+const char *gno_status_text(gno_status status)
+{
+    switch (status) {
+    case GNO_OK: return "ok";
+    case GNO_ERROR_MEMORY: return "out of memory";
+    case GNO_ERROR_ARGUMENT: return "invalid argument";
+    case GNO_ERROR_LIMIT: return "limit exceeded";
+    case GNO_ERROR_INPUT: return "malformed input";
+    case GNO_ERROR_FILE: return "file cannot be read or written";
+    case GNO_ERROR_CANCELLED: return "cancelled";
+    }
+    return "unknown status";
+}
+
+/* ---- memory ---------------------------------------------------------------------------------------------------- */
+
+static void *default_alloc(void *user, void *block, size_t old_size, size_t new_size)
+{
+    (void)user;
+    (void)old_size;
+    if (new_size == 0) {
+        free(block);
+        return NULL;
+    }
+    return realloc(block, new_size);
+}
+
+static void account(gno_context *context, size_t old_size, size_t new_size)
+{
+    /* Unsigned wrap-around makes one addition serve growth and shrinking alike. */
+    size_t change = new_size - old_size;
+    size_t used = atomic_fetch_add_explicit(&context->used, change, memory_order_relaxed) + change;
+    size_t peak = atomic_load_explicit(&context->peak, memory_order_relaxed);
+    while (used > peak && new_size > old_size) {
+        if (atomic_compare_exchange_weak_explicit(&context->peak, &peak, used, memory_order_relaxed,
+                                                  memory_order_relaxed)) {
+            break;
+        }
+    }
+}
+
+void *gnoi_realloc(gno_context *context, void *block, size_t old_count, size_t count, size_t size)
+{
+    size_t old_size = block ? old_count * size : 0; /* the block exists, so this product did not overflow */
+    void *fresh;
+    if (count == 0) {
+        if (block) {
+            context->def.alloc(context->def.alloc_user, block, old_size, 0);
+            account(context, old_size, 0);
+        }
+        return NULL;
+    }
+    if (size == 0 || count > (size_t)PTRDIFF_MAX / size) {
+        return NULL;
+    }
+    fresh = context->def.alloc(context->def.alloc_user, block, old_size, count * size);
+    if (fresh) {
+        account(context, old_size, count * size);
+    }
+    return fresh;
+}
+
+void *gnoi_malloc(gno_context *context, size_t count, size_t size)
+{
+    return gnoi_realloc(context, NULL, 0, count ? count : 1, size);
+}
+
+void *gnoi_calloc(gno_context *context, size_t count, size_t size)
+{
+    void *block = gnoi_malloc(context, count, size);
+    if (block) {
+        memset(block, 0, (count ? count : 1) * size);
+    }
+    return block;
+}
+
+void gnoi_free(gno_context *context, void *block, size_t count, size_t size)
+{
+    if (block) {
+        gnoi_realloc(context, block, count ? count : 1, 0, size);
+    }
+}
+
+int gnoi_reserve(gno_context *context, void **array, size_t *capacity, size_t need, size_t size)
+{
+    size_t wanted = *capacity ? *capacity : FIRST_CAPACITY;
+    void *fresh;
+    if (need <= *capacity) {
+        return 1;
+    }
+    while (wanted < need) {
+        if (wanted > SIZE_MAX / 2) {
+            wanted = need;
+            break;
+        }
+        wanted *= 2;
+    }
+    fresh = gnoi_realloc(context, *array, *capacity, wanted, size);
+    if (!fresh) {
+        return 0;
+    }
+    *array = fresh;
+    *capacity = wanted;
+    return 1;
+}
+
+void *gno_context_realloc(gno_context *context, void *block, size_t old_size, size_t new_size)
+{
+    return context ? gnoi_realloc(context, block, old_size, new_size, 1) : NULL;
+}
+
+size_t gno_context_memory(const gno_context *context, size_t *peak)
+{
+    if (peak) {
+        *peak = context ? atomic_load_explicit(&context->peak, memory_order_relaxed) : 0;
+    }
+    return context ? atomic_load_explicit(&context->used, memory_order_relaxed) : 0;
+}
+
+/* ---- the context itself ---------------------------------------------------------------------------------------- */
+
+gno_context_def gno_context_def_default(void)
+{
+    gno_context_def def;
+    memset(&def, 0, sizeof def);
+    return def;
+}
+
+gno_status gno_context_create(const gno_context_def *def, gno_context **context)
+{
+    gno_context_def used = def ? *def : gno_context_def_default();
+    gno_context *fresh;
+    if (!context) {
+        return GNO_ERROR_ARGUMENT;
+    }
+    *context = NULL;
+    if (!used.alloc) {
+        used.alloc = default_alloc;
+        used.alloc_user = NULL;
+    }
+    fresh = used.alloc(used.alloc_user, NULL, 0, sizeof *fresh);
+    if (!fresh) {
+        return GNO_ERROR_MEMORY;
+    }
+    fresh->def = used;
+    atomic_init(&fresh->used, sizeof *fresh);
+    atomic_init(&fresh->peak, sizeof *fresh);
+    fresh->message[0] = '\0';
+    *context = fresh;
+    return GNO_OK;
+}
+
+void gno_context_destroy(gno_context *context)
+{
+    if (context) {
+        context->def.alloc(context->def.alloc_user, context, sizeof *context, 0);
+    }
+}
+
+/* ---- messages -------------------------------------------------------------------------------------------------- */
+
+const char *gno_context_message(const gno_context *context)
+{
+    return context ? context->message : "";
+}
+
+gno_status gno_context_fail(gno_context *context, gno_status status, const char *text)
+{
+    return gnoi_fail(context, status, "%s", text ? text : "");
+}
+
+gno_status gnoi_fail(gno_context *context, gno_status status, const char *format, ...)
+{
+    char text[MESSAGE_SIZE]; /* an argument may be the present message, so it must not be overwritten while it is read */
+    va_list arguments;
+    if (!context) {
+        return status;
+    }
+    va_start(arguments, format);
+    if (vsnprintf(text, sizeof text, format, arguments) < 0) {
+        text[0] = '\0';
+    }
+    va_end(arguments);
+    memcpy(context->message, text, strlen(text) + 1);
+    return status;
+}
+
+void gno_context_log(gno_context *context, gno_log_level level, const char *text)
+{
+    if (context && text && context->def.log) {
+        context->def.log(context->def.log_user, level, text);
+    }
+}
+
+void gnoi_warn(gno_context *context, const char *format, ...)
+{
+    char text[MESSAGE_SIZE];
+    va_list arguments;
+    va_start(arguments, format);
+    if (vsnprintf(text, sizeof text, format, arguments) >= 0) {
+        gno_context_log(context, GNO_LOG_WARNING, text);
+    }
+    va_end(arguments);
+}
+
+gno_status gnoi_progress(gno_context *context, const char *stage, double fraction)
+{
+    if (context->def.progress && context->def.progress(context->def.progress_user, stage, fraction) != 0) {
+        return gnoi_fail(context, GNO_ERROR_CANCELLED, "%s: cancelled", stage);
+    }
+    return GNO_OK;
+}
+
+double gnoi_now(void)
+{
+    struct timespec now;
+    if (clock_gettime(CLOCK_MONOTONIC, &now) != 0) {
+        return 0;
+    }
+    return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
+}
