@@ -26,7 +26,7 @@ OUT     ?= out
 # The same input has to give the same bytes with every compiler: no contraction to fused multiply-adds, no -ffast-math,
 # no -march.
 SANITIZE :=
-LANGUAGE := -std=c11 -ffp-contract=off -pthread -D_POSIX_C_SOURCE=200809L -Iinclude -Isrc
+LANGUAGE := -std=c11 -ffp-contract=off -pthread -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -Iinclude -Isrc
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion
 TEST_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow
 COMPILE = $(CC) $(CPPFLAGS) $(CFLAGS) $(LANGUAGE) $(SANITIZE) -fvisibility=hidden -fPIC -MMD -MP

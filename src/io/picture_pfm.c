@@ -1,0 +1,31 @@
+/* picture_pfm.c -- portable float map: a three-line head, then 32-bit floats as they lie in memory, bottom row first.
+ *
+ * Place: encoder under picture.c. The sign of the third number tells the byte order (negative: little endian).
+ */
+#include "io/picture.h"
+
+#include <stdio.h>
+
+gno_status gnoi_picture_pfm(const gnoi_picture *picture, gnoi_file *file)
+{
+    const unsigned one = 1;
+    const int little = *(const unsigned char *)&one == 1;
+    char head[64];
+    const int length = snprintf(head, sizeof head, "PF\n%d %d\n%s\n", picture->width, picture->height, little ? "-1.0" : "1.0");
+    const size_t values = (size_t)picture->width * 3;
+    const size_t bytes = values * sizeof(float);
+    float *row = gno_context_realloc(file->context, NULL, 0, bytes);
+    if (row == NULL) {
+        return gno_context_fail(file->context, GNO_ERROR_MEMORY, "out of memory for a picture row");
+    }
+    gnoi_file_write(file, head, (size_t)length);
+    for (int y = picture->height - 1; y >= 0 && file->error == 0; y--) {
+        const float *source = gnoi_picture_row(picture, y);
+        for (size_t i = 0; i < values; i++) {
+            row[i] = (float)(source[i] * picture->exposure);
+        }
+        gnoi_file_write(file, row, bytes);
+    }
+    gno_context_realloc(file->context, row, bytes, 0);
+    return GNO_OK;
+}
