@@ -1,0 +1,119 @@
+/* assimp_material.c -- the file's materials in the terms of the simple lighting model.
+ *
+ * Place: under assimp_mesh.c; see assimp_file.h.
+ *
+ * Classical materials (3DS, Collada, FBX ...): kd and ka are the diffuse colour, ks the specular colour times its
+ * strength, n the shininess, transmission 1 - opacity.
+ * Metallic-roughness materials (glTF): kd and ka are the base colour; ks = 0.5 (1-r)^2 in all channels and
+ * n = 2/r^4 - 2, kept within [1,1000], for the roughness r: rough surfaces have no highlight, smooth ones a small strong one.
+ * Transmission is 1 - opacity, where the material's alpha mode is BLEND.
+ * Specular-glossiness materials: kd, ka, ks as for the classical ones, n of r = 1 - glossiness.
+ * All surfaces are two-sided, whatever the file says: a shadow through a wall seen from outside would surprise more.
+ */
+#include "assimp_file.h"
+#include <assimp/cimport.h>
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+#include <math.h>
+#include <string.h>
+
+static double within(double x, double lower, double upper)
+{
+    return x > lower ? (x < upper ? x : upper) : lower; /* NaN: lower */
+}
+
+/* 1 where the material has the number. */
+static int get_number(const struct aiMaterial *from, const char *key, unsigned type, unsigned index, double *number)
+{
+    ai_real value = 0;
+    if (aiGetMaterialFloatArray(from, key, type, index, &value, NULL) != aiReturn_SUCCESS) return 0;
+    *number = (double)value;
+    return 1;
+}
+
+static int get_colour(const struct aiMaterial *from, const char *key, unsigned type, unsigned index, double colour[3])
+{
+    struct aiColor4D value;
+    if (aiGetMaterialColor(from, key, type, index, &value) != aiReturn_SUCCESS) return 0;
+    colour[0] = within((double)value.r, 0, 1e6);
+    colour[1] = within((double)value.g, 0, 1e6);
+    colour[2] = within((double)value.b, 0, 1e6);
+    return 1;
+}
+
+static int has_texture(const struct aiMaterial *from)
+{
+    static const enum aiTextureType types[] = {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR, aiTextureType_NORMALS,
+                                               aiTextureType_HEIGHT};
+    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
+        if (aiGetMaterialTextureCount(from, types[i]) > 0) return 1;
+    return 0;
+}
+
+static int blends(const struct aiMaterial *from)
+{
+    struct aiString mode;
+    if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) != aiReturn_SUCCESS) return 0;
+    return strcmp(mode.data, "BLEND") == 0;
+}
+
+static double shininess_of_roughness(double roughness)
+{
+    double r2 = roughness * roughness;
+    return r2 > 0 ? within(2 / (r2 * r2) - 2, 1, 1000) : 1000;
+}
+
+static void set_highlight(const struct aiMaterial *from, gno_material *to)
+{
+    double roughness = 1, gloss = 0, strength = 1;
+    if (get_number(from, AI_MATKEY_GLOSSINESS_FACTOR, &gloss)) {
+        get_colour(from, AI_MATKEY_COLOR_SPECULAR, to->specular);
+        to->shininess = shininess_of_roughness(1 - within(gloss, 0, 1));
+    } else if (get_number(from, AI_MATKEY_ROUGHNESS_FACTOR, &roughness)) {
+        double smooth = 1 - within(roughness, 0, 1);
+        to->specular[0] = to->specular[1] = to->specular[2] = 0.5 * smooth * smooth;
+        to->shininess = shininess_of_roughness(1 - smooth);
+    } else {
+        get_colour(from, AI_MATKEY_COLOR_SPECULAR, to->specular);
+        get_number(from, AI_MATKEY_SHININESS_STRENGTH, &strength);
+        for (int i = 0; i < 3; i++) to->specular[i] *= within(strength, 0, 1e6);
+        if (get_number(from, AI_MATKEY_SHININESS, &to->shininess)) to->shininess = within(to->shininess, 0, 1e6);
+    }
+}
+
+static gno_material convert(const struct aiMaterial *from, int is_gltf)
+{
+    gno_material to = gno_material_default();
+    double gloss = 0, opacity = 1;
+    int has_gloss = get_number(from, AI_MATKEY_GLOSSINESS_FACTOR, &gloss);
+    if (has_gloss || !get_colour(from, AI_MATKEY_BASE_COLOR, to.diffuse)) get_colour(from, AI_MATKEY_COLOR_DIFFUSE, to.diffuse);
+    memcpy(to.ambient, to.diffuse, sizeof to.ambient);
+    set_highlight(from, &to);
+    if (get_number(from, AI_MATKEY_OPACITY, &opacity) && (!is_gltf || blends(from)))
+        to.transmission[0] = to.transmission[1] = to.transmission[2] = 1 - within(opacity, 0, 1);
+    return to;
+}
+
+/* assimp makes up a material of this name where the file has none. */
+static int is_made_up(const struct aiMaterial *from)
+{
+    struct aiString name;
+    if (aiGetMaterialString(from, AI_MATKEY_NAME, &name) != aiReturn_SUCCESS) return 0;
+    return strcmp(name.data, AI_DEFAULT_MATERIAL_NAME) == 0;
+}
+
+int gnoi_assimp_material(gnoi_assimp *a, unsigned number, gno_status *status)
+{
+    if (number >= a->file->mNumMaterials || a->is_geometry) return 0;
+    if (a->material_index[number] >= 0) return a->material_index[number];
+    const struct aiMaterial *from = a->file->mMaterials[number];
+    if (is_made_up(from)) return 0;
+    gno_material material = convert(from, a->is_gltf);
+    *status = gno_scene_add_material(a->scene, &material, &a->material_index[number]);
+    if (*status != GNO_OK) {
+        *status = gnoi_mesh_blame(a->scene, a->path, *status);
+        return -1;
+    }
+    if (has_texture(from)) a->textured_count++;
+    return a->material_index[number];
+}
