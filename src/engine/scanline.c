@@ -1,0 +1,145 @@
+/* scanline.c -- the scan-line engine: gno_render calls the passes in order.
+ *
+ * prepare (scene) -> shadow matrix by light (shadow) -> projection and bins (scan) -> tiles (engine/tile.h) -> picture.
+ */
+#include "base/parallel.h"
+#include "engine/tile.h"
+#include <string.h>
+
+gno_render_def gno_render_def_default(void)
+{
+    gno_render_def def;
+    def.lines = 12;
+    def.base_lines = 4;
+    def.refine_above = 0.02;
+    def.threads = 0;
+    def.terminator = GNO_TERMINATOR_EXACT;
+    return def;
+}
+
+static gno_status check_def(gno_context *context, const gno_render_def *def)
+{
+    if (def->lines < 1 || def->lines > GNO_MAX_LINES)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "lines: %d is not between 1 and %d", def->lines, GNO_MAX_LINES);
+    if (def->base_lines < 1 || def->lines % def->base_lines != 0 || def->lines / def->base_lines % 2 == 0)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "lines: %d is not an odd multiple of %d base lines", def->lines,
+                         def->base_lines);
+    if (!(def->refine_above >= 0))
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "refine_above: %g is negative", def->refine_above);
+    if (def->threads < 0 || def->threads > GNO_MAX_THREADS)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "threads: %d is not between 0 and %d", def->threads, GNO_MAX_THREADS);
+    return GNO_OK;
+}
+
+typedef struct tile_job {
+    gnoi_frame_job *frame;
+    gnoi_tile **workers; /* made when a thread takes its first tile */
+} tile_job;
+
+static gno_status render_tile(void *user, int worker, size_t piece)
+{
+    tile_job *job = user;
+    gno_context *context = job->frame->scene->context;
+    if (!job->workers[worker]) {
+        job->workers[worker] = gnoi_calloc(context, 1, sizeof **job->workers);
+        if (!job->workers[worker] || !gnoi_tile_init(job->workers[worker], job->frame))
+            return GNO_ERROR_MEMORY;
+    }
+    return gnoi_tile_render(job->workers[worker], piece) ? GNO_OK : GNO_ERROR_MEMORY;
+}
+
+static void add_stats(gno_stats *stats, const gnoi_tile *tile)
+{
+    stats->spans += tile->spans;
+    stats->shaded += tile->shaded;
+    stats->refined_pixels += tile->refined;
+    stats->columns += tile->store.asked;
+    stats->ones += tile->store.ones;
+    stats->columns_full += tile->store.full;
+}
+
+static gno_status render_tiles(gnoi_frame_job *frame, int threads, gno_stats *stats)
+{
+    gno_context *context = frame->scene->context;
+    size_t tiles = (size_t)frame->bins.tiles_x * (size_t)frame->bins.tiles_y;
+    gno_status status;
+    tile_job job;
+    job.frame = frame;
+    job.workers = gnoi_calloc(context, (size_t)threads, sizeof *job.workers);
+    if (!job.workers)
+        return GNO_ERROR_MEMORY;
+    status = gnoi_parallel(context, threads, tiles, "render", render_tile, &job);
+    for (int i = 0; i < threads; i++)
+        if (job.workers[i]) {
+            add_stats(stats, job.workers[i]);
+            gnoi_tile_free(job.workers[i]);
+            gnoi_free(context, job.workers[i], 1, sizeof **job.workers);
+        }
+    gnoi_free(context, job.workers, (size_t)threads, sizeof *job.workers);
+    return status;
+}
+
+/* Seconds since *from, which becomes now. */
+static double lap(double *from)
+{
+    double now = gnoi_now(), seconds = now - *from;
+    *from = now;
+    return seconds;
+}
+
+static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
+{
+    gnoi_frame_job frame;
+    gno_status status;
+    int threads = gnoi_thread_count(def->threads);
+    double t = gnoi_now(), start = t;
+    memset(&frame, 0, sizeof frame);
+    status = gnoi_scene_prepare(scene, threads);
+    stats->prepare_seconds = lap(&t);
+    if (status)
+        return status;
+    status = gnoi_shadow_cache_build(scene, threads);
+    stats->shadow_seconds = lap(&t);
+    if (status)
+        return status;
+    frame.scene = scene;
+    frame.def = *def;
+    frame.view = gnoi_view_make(&scene->camera, &scene->image, scene->prepared.scale);
+    frame.lamps = scene->shadows->lamps;
+    frame.trees = scene->shadows->trees;
+    frame.lamp_count = (int)scene->shadows->lamp_count;
+    frame.rgb = rgb;
+    status = gnoi_bins_build(scene, &frame.view, def->lines, threads, &frame.bins);
+    stats->project_seconds = lap(&t);
+    if (!status)
+        status = render_tiles(&frame, threads, stats);
+    stats->scan_seconds = lap(&t);
+    stats->total_seconds = t - start;
+    stats->polygons = (double)scene->prepared.poly_count;
+    stats->lights = frame.lamp_count;
+    stats->tiles = (double)frame.bins.tiles_x * frame.bins.tiles_y;
+    gnoi_bins_free(scene->context, &frame.bins);
+    gno_context_memory(scene->context, &stats->peak_memory);
+    return status;
+}
+
+gno_status gno_render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
+{
+    gno_render_def defaults = gno_render_def_default();
+    gno_stats unused;
+    gno_status status;
+    if (!scene)
+        return GNO_ERROR_ARGUMENT;
+    def = def ? def : &defaults;
+    stats = stats ? stats : &unused;
+    memset(stats, 0, sizeof *stats);
+    if (!rgb)
+        return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_render: no picture buffer");
+    status = check_def(scene->context, def);
+    if (status)
+        return status;
+    status = render(scene, def, rgb, stats);
+    if (status == GNO_ERROR_MEMORY)
+        return gnoi_fail(scene->context, status, "out of memory for the picture");
+    return status;
+}

@@ -1,0 +1,181 @@
+/* tile.c -- one tile: base lines everywhere, more lines where the picture varies: see tile.h. */
+#include "engine/tile.h"
+#include <string.h>
+
+/* Marked runs of a row nearer than this many pixels are taken as one. */
+#define RUN_GAP 3
+
+int gnoi_tile_init(gnoi_tile *tile, const gnoi_frame_job *job)
+{
+    gno_context *context = job->scene->context;
+    size_t lamps = (size_t)job->lamp_count;
+    memset(tile, 0, sizeof *tile);
+    tile->job = job;
+    tile->lines.context = tile->store.context = tile->outline.context = context;
+    tile->lit = gnoi_calloc(context, lamps, sizeof *tile->lit);
+    tile->lit_colour = gnoi_calloc(context, lamps, sizeof *tile->lit_colour);
+    tile->batch.weight = gnoi_calloc(context, lamps * GNOI_BATCH, sizeof *tile->batch.weight);
+    tile->batch.lamp_count = job->lamp_count;
+    tile->batch.smooth_terminator = job->def.terminator == GNO_TERMINATOR_SMOOTH;
+    tile->batch.view_start = job->bins.nearest_depth;
+    return tile->lit && tile->lit_colour && tile->batch.weight;
+}
+
+void gnoi_tile_free(gnoi_tile *tile)
+{
+    gno_context *context = tile->lines.context;
+    size_t lamps;
+    if (!tile->job)
+        return;
+    lamps = (size_t)tile->job->lamp_count;
+    gnoi_lines_free(&tile->lines);
+    gnoi_columns_free(&tile->store);
+    gnoi_outline_free(&tile->outline);
+    gnoi_free(context, tile->order, tile->order_capacity, sizeof *tile->order);
+    gnoi_free(context, tile->order_scratch, tile->order_scratch_capacity, sizeof *tile->order_scratch);
+    gnoi_free(context, tile->item_slot, tile->item_capacity, sizeof *tile->item_slot);
+    gnoi_free(context, tile->slots, tile->slot_capacity, sizeof *tile->slots);
+    gnoi_free(context, tile->edges, tile->edge_capacity, sizeof *tile->edges);
+    gnoi_free(context, tile->crossings, tile->crossing_capacity, sizeof *tile->crossings);
+    gnoi_free(context, tile->touched, tile->touched_capacity, sizeof *tile->touched);
+    gnoi_free(context, tile->columns, tile->column_capacity, sizeof *tile->columns);
+    gnoi_free(context, tile->parts, tile->part_capacity, sizeof *tile->parts);
+    gnoi_free(context, tile->intensities, tile->intensity_capacity, sizeof *tile->intensities);
+    gnoi_free(context, tile->lit, lamps, sizeof *tile->lit);
+    gnoi_free(context, tile->lit_colour, lamps, sizeof *tile->lit_colour);
+    gnoi_free(context, tile->batch.weight, lamps * GNOI_BATCH, sizeof *tile->batch.weight);
+}
+
+static void start_tile(gnoi_tile *tile, size_t index)
+{
+    const gnoi_frame_job *job = tile->job;
+    int tx = (int)(index % (size_t)job->bins.tiles_x), ty = (int)(index / (size_t)job->bins.tiles_x);
+    tile->x0 = tx * GNOI_TILE_W;
+    tile->y0 = ty * GNOI_TILE_H;
+    tile->width = job->view.width - tile->x0 < GNOI_TILE_W ? job->view.width - tile->x0 : GNOI_TILE_W;
+    tile->height = job->view.height - tile->y0 < GNOI_TILE_H ? job->view.height - tile->y0 : GNOI_TILE_H;
+    tile->slot_count = tile->column_count = tile->intensity_count = 0;
+    gnoi_columns_reset(&tile->store);
+    memset(tile->acc, 0, sizeof tile->acc);
+    memset(tile->weight, 0, sizeof tile->weight);
+    memset(tile->marked, 0, sizeof tile->marked);
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < GNOI_TILE_PIXELS; i++) {
+            tile->low[k][i] = HUGE_VALF;
+            tile->high[k][i] = -HUGE_VALF;
+        }
+}
+
+/* Lines y = (i + 1/2) / base in every row; the rows of the apron have only the one next to the tile. */
+static void add_base_lines(gnoi_tile *tile)
+{
+    int base = tile->job->def.base_lines, rows = tile->height + 2, refine = tile->job->def.lines > base;
+    gnoi_lines_reset(&tile->lines);
+    for (int row = 0; row < rows; row++) {
+        int apron = row == 0 || row == rows - 1;
+        tile->row_line[row] = (uint32_t)tile->lines.line_count;
+        if (apron && !refine)
+            continue;
+        for (int i = 0; i < base; i++)
+            if (!apron || (row == 0 ? i == base - 1 : i == 0))
+                gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / base, 0, tile->width * GNOI_X_ONE);
+    }
+    tile->row_line[rows] = (uint32_t)tile->lines.line_count;
+}
+
+/* The lines between the base lines, over [first,last] of one row. */
+static void add_fine_lines(gnoi_tile *tile, int row, int first, int last)
+{
+    const gno_render_def *def = &tile->job->def;
+    int factor = def->lines / def->base_lines;
+    for (int i = 0; i < def->lines; i++)
+        if (i % factor != factor / 2)
+            gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / def->lines, first * GNOI_X_ONE, (last + 1) * GNOI_X_ONE);
+}
+
+static int differs(const gnoi_tile *tile, int a, int b)
+{
+    for (int k = 0; k < 3; k++) {
+        float d = tile->acc[k][a] / tile->weight[a] - tile->acc[k][b] / tile->weight[b];
+        if (fabsf(d) > (float)tile->job->def.refine_above)
+            return 1;
+    }
+    return 0;
+}
+
+static int varies(const gnoi_tile *tile, int i)
+{
+    for (int k = 0; k < 3; k++)
+        if (tile->high[k][i] - tile->low[k][i] > (float)tile->job->def.refine_above)
+            return 1;
+    return differs(tile, i, i - GNOI_TILE_W) || differs(tile, i, i + GNOI_TILE_W);
+}
+
+/* Marks the pixels that vary and adds their lines; returns 0 when there are none. */
+static int plan_refinement(gnoi_tile *tile)
+{
+    gnoi_lines_reset(&tile->lines);
+    tile->row_line[0] = 0;
+    for (int row = 1; row <= tile->height; row++) {
+        int run = -1, last = 0;
+        tile->row_line[row] = (uint32_t)tile->lines.line_count;
+        for (int x = 0; x < tile->width; x++) {
+            int i = row * GNOI_TILE_W + x;
+            if (!tile->marked[i] && !varies(tile, i))
+                continue;
+            if (run >= 0 && x - last > RUN_GAP) {
+                add_fine_lines(tile, row, run, last);
+                tile->refined += last - run + 1;
+                run = -1;
+            }
+            run = run < 0 ? x : run;
+            last = x;
+        }
+        if (run >= 0) {
+            add_fine_lines(tile, row, run, last);
+            tile->refined += last - run + 1;
+        }
+    }
+    tile->row_line[tile->height + 1] = tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
+    return tile->lines.line_count > 0;
+}
+
+static void write_pixels(const gnoi_tile *tile)
+{
+    const gnoi_frame_job *job = tile->job;
+    for (int y = 0; y < tile->height; y++) {
+        float *out = job->rgb + 3 * ((size_t)(tile->y0 + y) * (size_t)job->view.width + (size_t)tile->x0);
+        for (int x = 0; x < tile->width; x++) {
+            int i = (y + 1) * GNOI_TILE_W + x;
+            for (int k = 0; k < 3; k++)
+                *out++ = tile->acc[k][i] / tile->weight[i];
+        }
+    }
+}
+
+static void make_rows(gnoi_tile *tile)
+{
+    for (int row = 0; row < tile->height + 2 && !tile->failed; row++)
+        gnoi_tile_row(tile, row);
+    gnoi_tile_flush(tile);
+}
+
+int gnoi_tile_render(gnoi_tile *tile, size_t index)
+{
+    const gnoi_frame_job *job = tile->job;
+    const uint32_t *items = job->bins.items + job->bins.start[index];
+    size_t count = job->bins.start[index + 1] - job->bins.start[index];
+    start_tile(tile, index);
+    gnoi_tile_sort(tile, items, count);
+    if (tile->failed)
+        return 0;
+    add_base_lines(tile);
+    gnoi_tile_draw(tile, items, count);
+    make_rows(tile);
+    if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile)) {
+        gnoi_tile_draw(tile, items, count);
+        make_rows(tile);
+    }
+    write_pixels(tile);
+    return !tile->failed && !tile->lines.failed;
+}

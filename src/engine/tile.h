@@ -1,0 +1,112 @@
+/* tile.h -- one tile of a scan-line picture: from polygons to pixels.
+ *
+ * Place in the data flow, each step a file of its own:
+ *   bins -> tile_scan.c: polygons of the tile, nearest first, as segments into the visible lists of the tile's lines
+ *        -> tile_rows.c: visible pieces of a pixel row -> coverage by surface and pixel, split by shadow polygons
+ *        -> tile_shade.c: one sample for each pixel and surface -> lighting -> the tile's picture
+ *        -> tile.c: which pixels vary and get more lines; the tile's part of the picture
+ * Invariants: a tile depends on nothing but the frame, so that any thread may make it; each line adds a coverage of exactly
+ * one pixel to each pixel it crosses.
+ */
+#ifndef GNOI_ENGINE_TILE_H
+#define GNOI_ENGINE_TILE_H
+
+#include "base/sort.h"
+#include "scan/bins.h"
+#include "scan/lines.h"
+#include "shade/batch.h"
+#include "shade/interp.h"
+#include "shadow/cache.h"
+#include "shadow/column.h"
+
+/* What all tiles of one picture share; read only while tiles are made. */
+typedef struct gnoi_frame_job {
+    const gno_scene *scene;
+    gno_render_def def;
+    gnoi_view view;
+    gnoi_bins bins;
+    const gnoi_lamp *lamps;
+    const gnoi_tree *trees;
+    int lamp_count;
+    float *rgb;
+} gnoi_frame_job;
+
+/* Rows of the tile, with one row of apron above and below (half a row of lines is made there to judge contrast). */
+#define GNOI_TILE_ROWS (GNOI_TILE_H + 2)
+#define GNOI_TILE_PIXELS (GNOI_TILE_ROWS * GNOI_TILE_W)
+
+/* A surface seen in the tile. */
+typedef struct gnoi_slot {
+    gnoi_receiver receiver;
+    uint32_t first_column; /* lamp_count columns in tile.columns, GNOI_NONE until lit */
+    uint32_t chain;        /* first visible piece in the row at hand, 0: none */
+    gnoi_interp interp;
+    uint32_t first_intensity; /* constant, gouraud: intensities in tile.intensities, GNOI_NONE until needed */
+    uint32_t intensity_corner;
+} gnoi_slot;
+
+/* Coverage of one surface, or of its lit part, along a pixel row: sums over pieces of length, and of length times the
+ * offset of its middle from the pixel's centre. Lengths in pixels. */
+typedef struct gnoi_cells {
+    float length[GNOI_TILE_W], mx[GNOI_TILE_W], my[GNOI_TILE_W];
+} gnoi_cells;
+
+typedef struct gnoi_tile {
+    const gnoi_frame_job *job;
+    int x0, y0, width, height; /* pixels */
+    int failed;                /* sticky: memory ran out */
+    gnoi_lines lines;
+    uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
+    gnoi_keyed *order, *order_scratch;     /* items nearest first */
+    size_t order_capacity, order_scratch_capacity;
+    uint32_t *item_slot;                   /* slot of each item of the tile's bin, GNOI_NONE */
+    size_t item_capacity;
+    size_t slot_count, slot_capacity;
+    gnoi_slot *slots;                      /* beside lines.depths, same numbering */
+    gnoi_outline outline;
+    size_t edge_capacity;
+    gnoi_edge *edges;                      /* of the polygon at hand */
+    size_t edge_count;
+    size_t crossing_capacity;
+    double *crossings;
+    size_t touched_capacity;
+    uint32_t *touched;                     /* slots seen in the row at hand */
+    size_t column_count, column_capacity;
+    gnoi_column *columns;
+    gnoi_columns store;
+    size_t part_capacity;
+    gno_span_part *parts;
+    gnoi_cells cells;
+    gnoi_cells *lit;                       /* one for each lamp */
+    float (*lit_colour)[3][GNOI_TILE_W];   /* one for each lamp: length times light that came through */
+    float row_cover[GNOI_TILE_W];
+    gnoi_batch batch;
+    size_t intensity_count, intensity_capacity;
+    double (*intensities)[3];
+    float acc[3][GNOI_TILE_PIXELS], low[3][GNOI_TILE_PIXELS], high[3][GNOI_TILE_PIXELS];
+    float weight[GNOI_TILE_PIXELS];        /* lines that cover the pixel */
+    unsigned char marked[GNOI_TILE_PIXELS];
+    double spans, shaded, refined;
+} gnoi_tile;
+
+/* Makes a tile worker ready; returns 0 when memory fails. Free in any case. */
+int gnoi_tile_init(gnoi_tile *tile, const gnoi_frame_job *job);
+void gnoi_tile_free(gnoi_tile *tile);
+
+/* Makes tile number `index` and writes it to job->rgb. Returns 0 when memory fails. */
+int gnoi_tile_render(gnoi_tile *tile, size_t index);
+
+/* tile_scan.c: prepares the order of the bin's polygons; draws them into the lines. */
+void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count);
+void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
+
+/* tile_rows.c: makes samples of every visible piece of row `row` (apron included). */
+void gnoi_tile_row(gnoi_tile *tile, int row);
+
+/* tile_shade.c: one sample of a slot at a picture point: `pixel` of the tile, `coverage` in lines; lamp_weight[j] what share of
+ * it lamp j reaches, times coverage; tint: factor on the reflected light (NULL: 1). Flushed when the batch is full. */
+void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int pixel, double x, double y, float coverage, const float *tint);
+void gnoi_tile_flush(gnoi_tile *tile);
+int gnoi_tile_is_precomputed(const gnoi_slot *slot);
+
+#endif

@@ -1,0 +1,238 @@
+/* tile_rows.c -- visible pieces of one pixel row into coverage by surface and pixel, split by shadow polygons: see tile.h.
+ *
+ * The pieces of a surface on all lines of the row are taken together; each lamp's column says whether they are lit, dark,
+ * or to be split (gno_span_split). A pixel then gives one sample of the surface, weighted by its coverage, and one more
+ * for each lamp that reaches only a part of it, taken in the middle of that part.
+ */
+#include "engine/tile.h"
+#include <string.h>
+
+static void cells_clear(gnoi_cells *cells, int first, int last)
+{
+    size_t size = (size_t)(last - first + 1) * sizeof(float);
+    memset(cells->length + first, 0, size);
+    memset(cells->mx + first, 0, size);
+    memset(cells->my + first, 0, size);
+}
+
+/* Adds [a,b) within one pixel; a, b in pixels from its left side, dy from the row's middle. */
+static void cells_add_part(gnoi_cells *cells, int pixel, float a, float b, float dy)
+{
+    float length = b - a;
+    cells->length[pixel] += length;
+    cells->mx[pixel] += length * (0.5f * (a + b) - 0.5f);
+    cells->my[pixel] += length * dy;
+}
+
+/* Adds [x0,x1), in pixels from the tile's left side. */
+static void cells_add(gnoi_cells *cells, float x0, float x1, float dy)
+{
+    int p0 = (int)x0, p1 = (int)x1;
+    if (p0 == p1) {
+        cells_add_part(cells, p0, x0 - (float)p0, x1 - (float)p0, dy);
+        return;
+    }
+    cells_add_part(cells, p0, x0 - (float)p0, 1, dy);
+    for (int p = p0 + 1; p < p1; p++) {
+        cells->length[p] += 1;
+        cells->my[p] += dy;
+    }
+    if (x1 > (float)p1)
+        cells_add_part(cells, p1, 0, x1 - (float)p1, dy);
+}
+
+/* The light that came through on [x0,x1), by pixel. */
+static void add_colour(float colour[3][GNOI_TILE_W], float x0, float x1, const double light[3])
+{
+    int p1 = (int)x1;
+    for (int p = (int)x0; p <= p1 && p < GNOI_TILE_W; p++) {
+        float a = x0 > (float)p ? x0 : (float)p, b = x1 < (float)(p + 1) ? x1 : (float)(p + 1);
+        for (int k = 0; k < 3; k++)
+            colour[k][p] += (b - a) * (float)light[k];
+    }
+}
+
+static gnoi_column *slot_columns(gnoi_tile *tile, gnoi_slot *slot)
+{
+    int lamps = tile->job->lamp_count;
+    if (slot->first_column == GNOI_NONE) {
+        if (!gnoi_reserve(tile->lines.context, (void **)&tile->columns, &tile->column_capacity, tile->column_count + (size_t)lamps + 1,
+                          sizeof *tile->columns)) {
+            tile->failed = 1;
+            return NULL;
+        }
+        slot->first_column = (uint32_t)tile->column_count;
+        tile->column_count += (size_t)lamps;
+        for (int j = 0; j < lamps; j++) {
+            gnoi_column *column = &tile->columns[slot->first_column + (uint32_t)j];
+            if (!gnoi_column_find(tile->job->scene, &tile->job->view, &tile->job->lamps[j], &tile->job->trees[j], &slot->receiver,
+                                  &tile->store, column))
+                tile->failed = 1;
+        }
+    }
+    return &tile->columns[slot->first_column];
+}
+
+/* Splits one piece by the column's shadow polygons and adds what is lit. */
+static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, const gnoi_piece *piece, float dy)
+{
+    const gnoi_frame_job *job = tile->job;
+    double x0 = tile->x0 + (double)piece->x0 / GNOI_X_ONE, x1 = tile->x0 + (double)piece->x1 / GNOI_X_ONE;
+    size_t n;
+    if (!gnoi_column_intervals(job->scene, &job->view, &job->lamps[lamp], &slot->receiver, column, tile->lines.lines[piece->line].y, x0,
+                               x1, &tile->store) ||
+        !gnoi_reserve(tile->lines.context, (void **)&tile->parts, &tile->part_capacity, 2 * tile->store.interval_count + 1,
+                      sizeof *tile->parts)) {
+        tile->failed = 1;
+        return;
+    }
+    n = gno_span_split(x0, x1, tile->store.intervals, tile->store.interval_count, tile->parts);
+    for (size_t i = 0; i < n; i++) {
+        const gno_span_part *part = &tile->parts[i];
+        float a = (float)(part->x0 - tile->x0), b = (float)(part->x1 - tile->x0);
+        if (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0))
+            continue;
+        cells_add(&tile->lit[lamp], a, b, dy);
+        add_colour(tile->lit_colour[lamp], a, b, part->light);
+    }
+}
+
+static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
+{
+    cells_clear(&tile->lit[lamp], first, last);
+    for (int k = 0; k < 3; k++)
+        memset(tile->lit_colour[lamp][k] + first, 0, (size_t)(last - first + 1) * sizeof(float));
+}
+
+/* The samples of one pixel of a surface. */
+static void sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel)
+{
+    const gnoi_cells *cells = &tile->cells;
+    int lamps = tile->job->lamp_count, index = row * GNOI_TILE_W + pixel;
+    float cover = cells->length[pixel], *weight = tile->batch.weight;
+    double cx = tile->x0 + pixel + 0.5, cy = tile->y0 + row - 0.5;
+    size_t at = (size_t)tile->batch.count;
+    unsigned parts = 0;
+    for (int j = 0; j < lamps; j++) {
+        float w = columns[j].state == GNOI_COLUMN_LIT ? cover : 0;
+        if (columns[j].state == GNOI_COLUMN_SPLIT) {
+            const float *length = tile->lit[j].length;
+            int whole = length[pixel] > cover * 0.999999f;
+            for (int k = 0; k < 3; k++)
+                whole &= tile->lit_colour[j][k][pixel] > cover * 0.999999f;
+            w = whole ? cover : 0;
+            parts += !whole && length[pixel] > 0;
+        }
+        weight[(size_t)j * GNOI_BATCH + at] = w;
+    }
+    gnoi_tile_sample(tile, slot, index, cx + (double)(cells->mx[pixel] / cover), cy + (double)(cells->my[pixel] / cover), cover, NULL);
+    for (int j = 0; j < lamps && parts; j++) {
+        const gnoi_cells *lit = &tile->lit[j];
+        float length = lit->length[pixel], tint[3];
+        at = (size_t)tile->batch.count;
+        if (columns[j].state != GNOI_COLUMN_SPLIT || !(length > 0))
+            continue;
+        for (int k = 0; k < 3; k++)
+            tint[k] = tile->lit_colour[j][k][pixel] / length;
+        if (length > cover * 0.999999f && tint[0] > 0.999999f && tint[1] > 0.999999f && tint[2] > 0.999999f)
+            continue;
+        for (int k = 0; k < lamps; k++)
+            weight[(size_t)k * GNOI_BATCH + at] = 0;
+        weight[(size_t)j * GNOI_BATCH + at] = length;
+        gnoi_tile_sample(tile, slot, index, cx + (double)(lit->mx[pixel] / length), cy + (double)(lit->my[pixel] / length), 0, tint);
+        parts--;
+    }
+}
+
+static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
+{
+    const gnoi_piece *pieces = tile->lines.pieces;
+    int lamps = tile->job->lamp_count, first = GNOI_TILE_W - 1, last = 0;
+    const gnoi_column *columns;
+    for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
+        int a = pieces[p].x0 / GNOI_X_ONE, b = (pieces[p].x1 - 1) / GNOI_X_ONE;
+        first = a < first ? a : first;
+        last = b > last ? b : last;
+    }
+    columns = slot_columns(tile, slot);
+    if (tile->failed)
+        return;
+    cells_clear(&tile->cells, first, last);
+    for (int j = 0; j < lamps; j++)
+        if (columns[j].state == GNOI_COLUMN_SPLIT)
+            clear_lamp(tile, j, first, last);
+    for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
+        float dy = (float)(tile->lines.lines[pieces[p].line].y - (tile->y0 + row - 0.5));
+        cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE, dy);
+        for (int j = 0; j < lamps; j++)
+            if (columns[j].state == GNOI_COLUMN_SPLIT)
+                split_piece(tile, slot, &columns[j], j, &pieces[p], dy);
+        tile->spans++;
+    }
+    for (int pixel = first; pixel <= last && !tile->failed; pixel++)
+        if (tile->cells.length[pixel] > 0) {
+            tile->row_cover[pixel] += tile->cells.length[pixel];
+            sample_pixel(tile, slot, columns, row, pixel);
+        }
+}
+
+/* Chains the row's pieces by slot; returns how many slots are seen. */
+static size_t chain_pieces(gnoi_tile *tile, int row)
+{
+    size_t count = 0;
+    for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++)
+        for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
+            gnoi_piece *piece = &tile->lines.pieces[p];
+            gnoi_slot *slot = &tile->slots[piece->slot];
+            if (slot->chain == 0)
+                tile->touched[count++] = piece->slot;
+            piece->chain = slot->chain;
+            slot->chain = p;
+        }
+    return count;
+}
+
+/* What the row's lines leave free shows the background. */
+static void add_background(gnoi_tile *tile, int row)
+{
+    const double *background = tile->job->scene->image.background;
+    float due[GNOI_TILE_W] = {0};
+    for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++) {
+        const gnoi_line *l = &tile->lines.lines[line];
+        for (int p = l->xa / GNOI_X_ONE; p < l->xb / GNOI_X_ONE; p++)
+            due[p] += 1;
+    }
+    for (int p = 0; p < tile->width; p++) {
+        int index = row * GNOI_TILE_W + p;
+        float free_cover = due[p] - tile->row_cover[p];
+        tile->weight[index] += due[p];
+        if (!(free_cover > 0))
+            continue;
+        for (int k = 0; k < 3; k++) {
+            float c = (float)background[k];
+            tile->acc[k][index] += free_cover * c;
+            tile->low[k][index] = c < tile->low[k][index] ? c : tile->low[k][index];
+            tile->high[k][index] = c > tile->high[k][index] ? c : tile->high[k][index];
+        }
+    }
+}
+
+void gnoi_tile_row(gnoi_tile *tile, int row)
+{
+    size_t count;
+    if (tile->row_line[row] == tile->row_line[row + 1])
+        return;
+    if (!gnoi_reserve(tile->lines.context, (void **)&tile->touched, &tile->touched_capacity, tile->slot_count, sizeof *tile->touched)) {
+        tile->failed = 1;
+        return;
+    }
+    count = chain_pieces(tile, row);
+    memset(tile->row_cover, 0, sizeof tile->row_cover);
+    for (size_t i = 0; i < count; i++) {
+        gnoi_slot *slot = &tile->slots[tile->touched[i]];
+        if (!tile->failed)
+            row_of_slot(tile, row, slot);
+        slot->chain = 0;
+    }
+    add_background(tile, row);
+}

@@ -1,0 +1,244 @@
+/* tile_scan.c -- polygons of a tile into the visible lists of its sample lines: see tile.h.
+ *
+ * Polygons come nearest first; one whose lines are all covered by nearer surfaces costs a look at its bounds and no more.
+ */
+#include "base/tolerance.h"
+#include "engine/tile.h"
+#include <string.h>
+
+/* Rounding of single precision bounds, relative. */
+#define FLOAT_SLACK 1e-6f
+
+static uint32_t descending_key(float z)
+{
+    union { float f; uint32_t i; } u = {z};
+    return u.i & 0x80000000u ? u.i : ~u.i & 0x7fffffffu;
+}
+
+/* The greatest nearness of the polygon's corners; behind the near plane counts as nearest of all. */
+static float corner_nearness(const gnoi_tile *tile, const gnoi_poly *poly)
+{
+    const uint32_t *vertex = tile->job->scene->prepared.corner_vertex;
+    float z = -HUGE_VALF;
+    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
+        const gnoi_vertex *v = &tile->job->bins.vertices[vertex[i]];
+        if (!(v->x < HUGE_VAL))
+            return HUGE_VALF;
+        z = v->z > z ? v->z : z;
+    }
+    return z;
+}
+
+void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count)
+{
+    gno_context *context = tile->lines.context;
+    if (!gnoi_reserve(context, (void **)&tile->order, &tile->order_capacity, count, sizeof *tile->order) ||
+        !gnoi_reserve(context, (void **)&tile->order_scratch, &tile->order_scratch_capacity, count, sizeof *tile->order_scratch) ||
+        !gnoi_reserve(context, (void **)&tile->item_slot, &tile->item_capacity, count, sizeof *tile->item_slot)) {
+        tile->failed = 1;
+        return;
+    }
+    for (size_t i = 0; i < count; i++) {
+        tile->order[i].key = descending_key(corner_nearness(tile, &tile->job->scene->prepared.polys[items[i]])) >> 10;
+        tile->order[i].value = (uint32_t)i;
+        tile->item_slot[i] = GNOI_NONE;
+    }
+    gnoi_sort(tile->order, tile->order_scratch, count);
+}
+
+static double plane_tolerance(const gno_scene *scene, const gnoi_poly *poly)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    double reach = 0, far_away = 0;
+    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
+        const double *p = scene->positions[prep->corner_vertex[i]];
+        for (int k = 0; k < 3; k++) {
+            double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
+            reach = r > reach ? r : reach;
+            far_away = fabs(p[k]) > far_away ? fabs(p[k]) : far_away;
+        }
+    }
+    return GNOI_COPLANAR * reach + 1e-14 * far_away;
+}
+
+/* Bounds of the surface's nearness in the tile: those of its corners, and those of its plane over the tile. */
+static void set_depth_bounds(const gnoi_tile *tile, const gnoi_screen_plane *plane, gnoi_depth *depth)
+{
+    double x0 = tile->x0, x1 = x0 + tile->width, y0 = tile->y0 - 0.5, y1 = y0 + tile->height + 1;
+    double zx0 = plane->fx * x0, zx1 = plane->fx * x1, zy0 = plane->fy * y0, zy1 = plane->fy * y1;
+    float low = (float)((zx0 < zx1 ? zx0 : zx1) + (zy0 < zy1 ? zy0 : zy1) + plane->f0);
+    float high = (float)((zx0 > zx1 ? zx0 : zx1) + (zy0 > zy1 ? zy0 : zy1) + plane->f0);
+    depth->nearest = tile->outline.z1 < high ? tile->outline.z1 : high;
+    depth->farthest = tile->outline.z0 > low ? tile->outline.z0 : low;
+    depth->nearest += FLOAT_SLACK * fabsf(depth->nearest);
+    depth->farthest -= FLOAT_SLACK * fabsf(depth->farthest);
+}
+
+static double clamp(double v, double lo, double hi) { return v < lo ? lo : v > hi ? hi : v; }
+
+/* A slot for the polygon of the outline at hand; GNOI_NONE when it is seen from its undrawn side or edge on. */
+static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
+{
+    const gnoi_frame_job *job = tile->job;
+    const gnoi_poly *poly = &job->scene->prepared.polys[index];
+    const gnoi_outline *o = &tile->outline;
+    double side = gnoi_view_side(&job->view, poly->n, poly->d), x1 = tile->x0 + tile->width, y1 = tile->y0 + tile->height + 0.5;
+    gno_context *context = tile->lines.context;
+    gnoi_lines *lines = &tile->lines;
+    gnoi_receiver *r;
+    gnoi_depth *depth;
+    gnoi_slot *slot;
+    if (side == 0 || (side < 0 && !poly->two_sided))
+        return GNOI_NONE;
+    if (!gnoi_reserve(context, (void **)&tile->slots, &tile->slot_capacity, tile->slot_count + 1, sizeof *tile->slots) ||
+        !gnoi_reserve(context, (void **)&lines->depths, &lines->depth_capacity, tile->slot_count + 1, sizeof *lines->depths)) {
+        tile->failed = 1;
+        return GNOI_NONE;
+    }
+    slot = &tile->slots[tile->slot_count];
+    depth = &lines->depths[tile->slot_count];
+    slot->first_column = slot->first_intensity = GNOI_NONE;
+    slot->intensity_corner = GNOI_NONE;
+    slot->chain = 0;
+    slot->interp.ready = 0;
+    r = &slot->receiver;
+    r->poly = poly;
+    r->index = index;
+    r->side = side;
+    r->nearness = gnoi_view_nearness(&job->view, poly->n, poly->d, side);
+    r->tolerance = plane_tolerance(job->scene, poly);
+    r->x0 = clamp(o->x0, tile->x0, x1);
+    r->x1 = clamp(o->x1, tile->x0, x1);
+    r->y0 = clamp(o->y0, tile->y0 - 0.5, y1);
+    r->y1 = clamp(o->y1, tile->y0 - 0.5, y1);
+    r->whole = !o->cut && r->x0 == o->x0 && r->x1 == o->x1 && r->y0 == o->y0 && r->y1 == o->y1;
+    depth->fx = r->nearness.fx / GNOI_X_ONE;
+    depth->fy = r->nearness.fy;
+    depth->f0 = r->nearness.f0 + r->nearness.fx * tile->x0;
+    depth->tolerance_z = job->view.orthographic ? 0 : r->tolerance / fabs(side);
+    depth->tolerance_0 = job->view.orthographic ? r->tolerance / fabs(side) : 0;
+    depth->index = index;
+    depth->priority = poly->priority;
+    set_depth_bounds(tile, &r->nearness, depth);
+    return (uint32_t)tile->slot_count++;
+}
+
+static int set_edges(gnoi_tile *tile)
+{
+    const gnoi_outline *o = &tile->outline;
+    uint32_t first = 0;
+    tile->edge_count = 0;
+    if (!gnoi_reserve(tile->lines.context, (void **)&tile->edges, &tile->edge_capacity, o->count, sizeof *tile->edges) ||
+        !gnoi_reserve(tile->lines.context, (void **)&tile->crossings, &tile->crossing_capacity, o->count, sizeof *tile->crossings))
+        return 0;
+    for (size_t r = 0; r < o->ring_count; r++) {
+        uint32_t end = o->ring_end[r];
+        for (uint32_t i = first; i < end; i++) {
+            const gnoi_hpoint *a = &o->points[i], *b = &o->points[i + 1 < end ? i + 1 : first];
+            gnoi_edge *e = &tile->edges[tile->edge_count];
+            if (a->y == b->y)
+                continue;
+            if (a->y > b->y) {
+                const gnoi_hpoint *swap = a;
+                a = b;
+                b = swap;
+            }
+            e->x = a->x;
+            e->y = a->y;
+            e->y1 = b->y;
+            e->slope = (b->x - a->x) / (b->y - a->y);
+            tile->edge_count++;
+        }
+        first = end;
+    }
+    return 1;
+}
+
+static int32_t line_position(const gnoi_tile *tile, double x)
+{
+    double t = (x - tile->x0) * GNOI_X_ONE;
+    return (int32_t)floor(clamp(t, -(double)GNOI_X_ONE, (double)(GNOI_TILE_W + 1) * GNOI_X_ONE) + 0.5);
+}
+
+static void draw_line(gnoi_tile *tile, uint32_t line, uint32_t slot)
+{
+    double y = tile->lines.lines[line].y, *x = tile->crossings;
+    size_t n = 0;
+    for (size_t i = 0; i < tile->edge_count; i++) {
+        const gnoi_edge *e = &tile->edges[i];
+        if (y < e->y || y >= e->y1)
+            continue;
+        double v = gnoi_edge_at(e, y);
+        size_t k = n++;
+        for (; k > 0 && x[k - 1] > v; k--)
+            x[k] = x[k - 1];
+        x[k] = v;
+    }
+    for (size_t i = 0; i + 1 < n; i += 2) {
+        int32_t x0 = line_position(tile, x[i]), x1 = line_position(tile, x[i + 1]);
+        if (x0 < x1)
+            gnoi_lines_insert(&tile->lines, line, slot, x0, x1);
+    }
+}
+
+/* 1 when a surface no nearer than `nearest` may still be seen on the line. */
+static int is_open(const gnoi_line *line, float nearest) { return line->uncovered > 0 || !(line->farthest > nearest); }
+
+/* Lines of the tile that the outline may cross: [*first,*end). */
+static void line_range(const gnoi_tile *tile, uint32_t *first, uint32_t *end)
+{
+    double r0 = floor(tile->outline.y0 - tile->y0) + 1, r1 = floor(tile->outline.y1 - tile->y0) + 1;
+    int rows = tile->height + 2;
+    r0 = clamp(r0, 0, rows);
+    r1 = clamp(r1, -1, rows - 1);
+    *first = tile->row_line[(int)r0];
+    *end = r1 < r0 ? *first : tile->row_line[(int)r1 + 1];
+}
+
+static void draw_item(gnoi_tile *tile, uint32_t item, uint32_t index)
+{
+    const gnoi_poly *poly = &tile->job->scene->prepared.polys[index];
+    const gnoi_outline *o = &tile->outline;
+    uint32_t first, end, line, slot;
+    float bound;
+    if (!gnoi_outline_set(&tile->outline, tile->job->scene, &tile->job->view, tile->job->bins.vertices, poly)) {
+        tile->failed = 1;
+        return;
+    }
+    if (o->count < 3 || !(o->x1 > tile->x0) || !(o->x0 < tile->x0 + tile->width))
+        return;
+    line_range(tile, &first, &end);
+    bound = o->z1 + FLOAT_SLACK * fabsf(o->z1);
+    for (line = first; line < end; line++) {
+        const gnoi_line *l = &tile->lines.lines[line];
+        if (l->y >= o->y0 && l->y < o->y1 && is_open(l, bound))
+            break;
+    }
+    if (line == end)
+        return;
+    slot = tile->item_slot[item];
+    if (slot == GNOI_NONE)
+        slot = tile->item_slot[item] = new_slot(tile, index);
+    if (slot == GNOI_NONE)
+        return;
+    if (!set_edges(tile)) {
+        tile->failed = 1;
+        return;
+    }
+    const gnoi_depth *depth = &tile->lines.depths[slot];
+    bound = depth->nearest + (float)(depth->tolerance_z * fabs((double)depth->nearest) + depth->tolerance_0);
+    for (; line < end; line++) {
+        const gnoi_line *l = &tile->lines.lines[line];
+        if (l->y >= o->y0 && l->y < o->y1 && is_open(l, bound))
+            draw_line(tile, line, slot);
+    }
+}
+
+void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count)
+{
+    for (size_t i = 0; i < count && !tile->failed; i++) {
+        uint32_t item = tile->order[i].value;
+        draw_item(tile, item, items[item]);
+    }
+    tile->failed |= tile->lines.failed;
+}

@@ -1,0 +1,210 @@
+/* tile_shade.c -- samples of surfaces into colours, colours into the tile's picture: see tile.h.
+ *
+ * Flat and phong surfaces are lit in batches (shade/batch.h); constant and gouraud ones carry intensities taken once at the
+ * centroid or at the corners, interpolated for each lamp, so that the shadow still cuts them exactly.
+ */
+#include "engine/tile.h"
+
+#define EXTRA_SAMPLE 0x80000000u /* a tag's mark: the lit part under one lamp only */
+
+int gnoi_tile_is_precomputed(const gnoi_slot *slot)
+{
+    uint32_t s = slot->receiver.poly->shading;
+    return s == GNO_SHADING_CONSTANT || s == GNO_SHADING_GOURAUD;
+}
+
+/* ---- into the picture --------------------------------------------------------------------------------------------- */
+
+static void add_colour(gnoi_tile *tile, uint32_t pixel, int extra, float weight, const float rgb[3])
+{
+    for (int k = 0; k < 3; k++) {
+        float c = rgb[k] / weight, *low = &tile->low[k][pixel], *high = &tile->high[k][pixel];
+        tile->acc[k][pixel] += rgb[k];
+        if (extra) {
+            tile->marked[pixel] |= c > (float)tile->job->def.refine_above;
+            continue;
+        }
+        *low = c < *low ? c : *low;
+        *high = c > *high ? c : *high;
+    }
+}
+
+void gnoi_tile_flush(gnoi_tile *tile)
+{
+    gnoi_batch *b = &tile->batch;
+    gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
+    for (int i = 0; i < b->count; i++) {
+        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]};
+        int extra = (b->tag[i] & EXTRA_SAMPLE) != 0;
+        add_colour(tile, b->tag[i] & ~EXTRA_SAMPLE, extra, b->coverage[i], rgb);
+    }
+    tile->shaded += b->count;
+    b->count = 0;
+}
+
+/* ---- intensities taken once ---------------------------------------------------------------------------------------- */
+
+/* The mean of the outer ring's area. */
+static vec3 centroid(const gno_scene *scene, const gnoi_poly *poly)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    uint32_t first = prep->ring_corner[poly->ring], end = prep->ring_corner[poly->ring + 1];
+    vec3 origin = v3_from(scene->positions[prep->corner_vertex[first]]), sum = v3(0, 0, 0), n = v3_from(poly->n);
+    double area = 0;
+    for (uint32_t i = first + 1; i + 1 < end; i++) {
+        vec3 a = v3_sub(v3_from(scene->positions[prep->corner_vertex[i]]), origin);
+        vec3 b = v3_sub(v3_from(scene->positions[prep->corner_vertex[i + 1]]), origin);
+        double t = v3_dot(v3_cross(a, b), n);
+        sum = v3_mad(sum, v3_add(a, b), t / 3);
+        area += t;
+    }
+    return v3_mad(origin, sum, 1 / area);
+}
+
+static vec3 viewer_normal(const gnoi_slot *slot)
+{
+    return v3_scale(v3_from(slot->receiver.poly->n), slot->receiver.side < 0 ? -1 : 1);
+}
+
+static void set_intensity(const gnoi_frame_job *job, const gnoi_slot *slot, vec3 point, vec3 n, double (*rgb)[3])
+{
+    const gno_material *material = &job->scene->materials[slot->receiver.poly->material];
+    for (int j = 0; j < job->lamp_count; j++) {
+        rgb[j][0] = rgb[j][1] = rgb[j][2] = 0;
+        gnoi_shade_point(&job->view, &job->lamps[j], material, (double)job->bins.nearest_depth, point, n, rgb[j]);
+    }
+}
+
+/* The interpolated normal of a corner, turned to the viewer's side of the plane. */
+static vec3 corner_normal(const gnoi_frame_job *job, const gnoi_slot *slot, uint32_t corner)
+{
+    const gnoi_prepared *prep = &job->scene->prepared;
+    const float *f = prep->normals[prep->corner_normal[corner]];
+    vec3 g = viewer_normal(slot), n = v3((double)f[0], (double)f[1], (double)f[2]);
+    return v3_dot(n, g) < 0 ? v3_scale(n, -1) : n;
+}
+
+/* Makes the slot's intensities valid for picture point (x,y); the corners' weights there go to w (constant: one corner). */
+static double (*seek_intensities(gnoi_tile *tile, gnoi_slot *slot, double x, double y, double w[3]))[3]
+{
+    const gnoi_frame_job *job = tile->job;
+    const gnoi_poly *poly = slot->receiver.poly;
+    size_t lamps = (size_t)job->lamp_count;
+    int gouraud = poly->shading == GNO_SHADING_GOURAUD;
+    if (slot->first_intensity == GNOI_NONE) {
+        if (!gnoi_reserve(tile->lines.context, (void **)&tile->intensities, &tile->intensity_capacity,
+                          tile->intensity_count + 3 * lamps + 1, sizeof *tile->intensities)) {
+            tile->failed = 1;
+            return NULL;
+        }
+        slot->first_intensity = (uint32_t)tile->intensity_count;
+        tile->intensity_count += 3 * lamps;
+        if (!gouraud)
+            set_intensity(job, slot, centroid(job->scene, poly), viewer_normal(slot), &tile->intensities[slot->first_intensity]);
+    }
+    w[0] = 1;
+    w[1] = w[2] = 0;
+    if (gouraud) {
+        double sum;
+        gnoi_interp_seek(&slot->interp, job->scene, &job->view, poly, x, y);
+        for (size_t i = 0; i < 3 && slot->intensity_corner != slot->interp.triangle; i++) {
+            uint32_t corner = slot->interp.corner[i];
+            vec3 p = v3_from(job->scene->positions[job->scene->prepared.corner_vertex[corner]]);
+            set_intensity(job, slot, p, corner_normal(job, slot, corner), &tile->intensities[slot->first_intensity + i * lamps]);
+        }
+        slot->intensity_corner = slot->interp.triangle;
+        for (int i = 0; i < 3; i++) {
+            w[i] = gnoi_plane_at(&slot->interp.weight[i], x, y);
+            w[i] = w[i] > 0 ? w[i] : 0;
+        }
+        sum = w[0] + w[1] + w[2];
+        for (int i = 0; i < 3; i++)
+            w[i] = sum > 0 ? w[i] / sum : 1.0 / 3;
+    }
+    return &tile->intensities[slot->first_intensity];
+}
+
+static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int pixel, double x, double y, float coverage, const float *tint)
+{
+    const gnoi_frame_job *job = tile->job;
+    const gno_material *material = &job->scene->materials[slot->receiver.poly->material];
+    size_t lamps = (size_t)job->lamp_count, corners = slot->receiver.poly->shading == GNO_SHADING_GOURAUD ? 3 : 1;
+    double w[3], (*intensity)[3] = seek_intensities(tile, slot, x, y, w);
+    float rgb[3], weight = coverage;
+    if (!intensity)
+        return;
+    for (int k = 0; k < 3; k++)
+        rgb[k] = coverage * (float)(job->scene->ambient[k] * material->ambient[k]);
+    for (size_t j = 0; j < lamps; j++) {
+        float lamp_weight = tile->batch.weight[j * GNOI_BATCH + (size_t)tile->batch.count];
+        weight = lamp_weight > weight ? lamp_weight : weight;
+        for (size_t i = 0; i < corners && lamp_weight > 0; i++)
+            for (int k = 0; k < 3; k++)
+                rgb[k] += lamp_weight * (tint ? tint[k] : 1) * (float)(w[i] * intensity[i * lamps + j][k]);
+    }
+    tile->shaded++;
+    add_colour(tile, (uint32_t)pixel, tint != NULL, weight, rgb);
+}
+
+/* ---- samples for the batch ----------------------------------------------------------------------------------------- */
+
+static void set_point(gnoi_batch *b, int i, const gnoi_view *view, const gnoi_screen_plane *nearness, double x, double y)
+{
+    double u = (x - 0.5 * view->width) / view->s, v = (y - 0.5 * view->height) / view->s, z = gnoi_plane_at(nearness, x, y);
+    vec3 p = v3_sub(v3_scale(view->right, u), v3_scale(view->up, v));
+    p = view->orthographic ? v3_mad(p, view->forward, -z) : v3_scale(v3_add(p, view->forward), 1 / z);
+    b->px[i] = (float)p.x;
+    b->py[i] = (float)p.y;
+    b->pz[i] = (float)p.z;
+}
+
+static void set_normal(gnoi_batch *b, int i, const gnoi_frame_job *job, gnoi_slot *slot, double x, double y)
+{
+    vec3 g = viewer_normal(slot), n = g;
+    if (slot->receiver.poly->shading == GNO_SHADING_PHONG) {
+        const gnoi_screen_plane *f = slot->interp.normal;
+        gnoi_interp_seek(&slot->interp, job->scene, &job->view, slot->receiver.poly, x, y);
+        n = v3_unit(v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y)));
+        if (v3_dot(n, g) < 0)
+            n = v3_scale(n, -1);
+    }
+    b->nx[i] = (float)n.x;
+    b->ny[i] = (float)n.y;
+    b->nz[i] = (float)n.z;
+    b->gx[i] = (float)g.x;
+    b->gy[i] = (float)g.y;
+    b->gz[i] = (float)g.z;
+}
+
+static void set_material(gnoi_batch *b, int i, const gno_scene *scene, const gno_material *m, float coverage, const float *tint)
+{
+    for (int k = 0; k < 3; k++) {
+        float t = tint ? tint[k] : 1;
+        b->kd[k][i] = t * (float)m->diffuse[k];
+        b->ks[k][i] = t * (float)m->specular[k];
+        b->rgb[k][i] = tint ? 0 : coverage * (float)(scene->ambient[k] * m->ambient[k]);
+    }
+    b->shininess[i] = (float)m->shininess;
+}
+
+void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int pixel, double x, double y, float coverage, const float *tint)
+{
+    const gnoi_frame_job *job = tile->job;
+    gnoi_batch *b = &tile->batch;
+    int i = b->count;
+    if (gnoi_tile_is_precomputed(slot)) {
+        sample_precomputed(tile, slot, pixel, x, y, coverage, tint);
+        return;
+    }
+    set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
+    set_normal(b, i, job, slot, x, y);
+    set_material(b, i, job->scene, &job->scene->materials[slot->receiver.poly->material], coverage, tint);
+    b->coverage[i] = coverage;
+    for (int j = 0; j < job->lamp_count && tint; j++) {
+        float w = b->weight[(size_t)j * GNOI_BATCH + (size_t)i];
+        b->coverage[i] = w > 0 ? w : b->coverage[i];
+    }
+    b->tag[i] = (uint32_t)pixel | (tint ? EXTRA_SAMPLE : 0);
+    if (++b->count == GNOI_BATCH)
+        gnoi_tile_flush(tile);
+}

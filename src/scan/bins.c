@@ -1,0 +1,198 @@
+/* bins.c -- see bins.h. Two passes over the polygons in fixed chunks: count by tile, then fill. */
+#include "scan/bins.h"
+#include "base/parallel.h"
+#include <string.h>
+
+#define CHUNK 8192
+#define VERTEX_CHUNK 32768
+
+typedef struct tile_range {
+    uint16_t x0, y0, x1, y1; /* tiles, both ends included; x0 > x1: none */
+} tile_range;
+
+typedef struct job {
+    const gno_scene *scene;
+    const gnoi_view *view;
+    gnoi_bins *bins;
+    int lines;
+    size_t chunk_count, tile_count;
+    tile_range *ranges;
+    uint32_t *counts; /* chunk_count x tile_count: how many, then where the chunk's next item goes */
+    gnoi_outline *outlines; /* one for each worker */
+} job;
+
+static gno_status project_chunk(void *user, int worker, size_t piece)
+{
+    job *j = user;
+    const gnoi_view *view = j->view;
+    size_t end = (piece + 1) * VERTEX_CHUNK < j->bins->vertex_count ? (piece + 1) * VERTEX_CHUNK : j->bins->vertex_count;
+    (void)worker;
+    for (size_t i = piece * VERTEX_CHUNK; i < end; i++) {
+        vec3 p = v3_from(j->scene->positions[i]);
+        gnoi_vertex *v = &j->bins->vertices[i];
+        double depth = gnoi_form_at(&view->depth, p), k = view->orthographic ? 1 : 1 / depth;
+        if (!(depth > view->near_depth)) {
+            v->x = HUGE_VAL;
+            v->y = 0;
+            v->z = 0;
+            continue;
+        }
+        v->x = gnoi_form_at(&view->x, p) * k;
+        v->y = gnoi_form_at(&view->y, p) * k;
+        v->z = (float)(view->orthographic ? -depth : k);
+    }
+    return GNO_OK;
+}
+
+/* 1 when a sample line lies in [y0, y1). */
+static int crosses_line(double y0, double y1, int lines) { return ceil(y0 * lines - 0.5) < ceil(y1 * lines - 0.5); }
+
+static uint16_t tile_index(double v, int size, int tiles)
+{
+    double t = floor(v / size);
+    return (uint16_t)(t < 0 ? 0 : t > tiles - 1 ? tiles - 1 : t);
+}
+
+static tile_range range_of(const job *j, const gnoi_outline *o)
+{
+    tile_range none = {1, 1, 0, 0}, r;
+    const gnoi_bins *b = j->bins;
+    if (o->count < 3 || !(o->x1 > 0) || !(o->x0 < j->view->width) || !(o->y1 > -0.5) || !(o->y0 < j->view->height + 0.5) ||
+        !crosses_line(o->y0, o->y1, j->lines))
+        return none;
+    r.x0 = tile_index(o->x0 - 1e-3, GNOI_TILE_W, b->tiles_x);
+    r.x1 = tile_index(o->x1 + 1e-3, GNOI_TILE_W, b->tiles_x);
+    r.y0 = tile_index(o->y0 - 0.5, GNOI_TILE_H, b->tiles_y);
+    r.y1 = tile_index(o->y1 + 0.5, GNOI_TILE_H, b->tiles_y);
+    return r;
+}
+
+static gno_status count_chunk(void *user, int worker, size_t piece)
+{
+    job *j = user;
+    const gnoi_prepared *prep = &j->scene->prepared;
+    size_t end = (piece + 1) * CHUNK < prep->poly_count ? (piece + 1) * CHUNK : prep->poly_count;
+    uint32_t *counts = j->counts + piece * j->tile_count;
+    gnoi_outline *outline = &j->outlines[worker];
+    for (size_t i = piece * CHUNK; i < end; i++) {
+        tile_range r;
+        if (!gnoi_outline_set(outline, j->scene, j->view, j->bins->vertices, &prep->polys[i]))
+            return GNO_ERROR_MEMORY;
+        r = j->ranges[i] = range_of(j, outline);
+        for (int y = r.y0; y <= r.y1 && r.x0 <= r.x1; y++)
+            for (int x = r.x0; x <= r.x1; x++)
+                counts[(size_t)y * (size_t)j->bins->tiles_x + (size_t)x]++;
+    }
+    return GNO_OK;
+}
+
+static gno_status fill_chunk(void *user, int worker, size_t piece)
+{
+    job *j = user;
+    size_t count = j->scene->prepared.poly_count;
+    size_t end = (piece + 1) * CHUNK < count ? (piece + 1) * CHUNK : count;
+    uint32_t *next = j->counts + piece * j->tile_count;
+    (void)worker;
+    for (size_t i = piece * CHUNK; i < end; i++) {
+        tile_range r = j->ranges[i];
+        for (int y = r.y0; y <= r.y1 && r.x0 <= r.x1; y++)
+            for (int x = r.x0; x <= r.x1; x++)
+                j->bins->items[next[(size_t)y * (size_t)j->bins->tiles_x + (size_t)x]++] = (uint32_t)i;
+    }
+    return GNO_OK;
+}
+
+/* Counts become places: tiles in order, within a tile the chunks in order. Returns 0 when they pass 32 bits. */
+static int place_items(job *j)
+{
+    uint64_t sum = 0;
+    for (size_t t = 0; t < j->tile_count; t++) {
+        j->bins->start[t] = (uint32_t)sum;
+        for (size_t c = 0; c < j->chunk_count; c++) {
+            uint32_t n = j->counts[c * j->tile_count + t];
+            j->counts[c * j->tile_count + t] = (uint32_t)sum;
+            sum += n;
+            if (sum > 0xffffffffu)
+                return 0;
+        }
+    }
+    j->bins->start[j->tile_count] = (uint32_t)sum;
+    j->bins->item_count = (size_t)sum;
+    return 1;
+}
+
+static float nearest_depth(const gnoi_bins *bins)
+{
+    float z = -HUGE_VALF;
+    for (size_t i = 0; i < bins->vertex_count; i++)
+        if (bins->vertices[i].x < HUGE_VAL && bins->vertices[i].z > z)
+            z = bins->vertices[i].z;
+    return z > -HUGE_VALF ? -z : 0;
+}
+
+static gno_status run(job *j, int threads)
+{
+    gno_context *context = j->scene->context;
+    gnoi_bins *b = j->bins;
+    gno_status status;
+    status = gnoi_parallel(context, threads, (b->vertex_count + VERTEX_CHUNK - 1) / VERTEX_CHUNK, "project", project_chunk, j);
+    if (!status)
+        status = gnoi_parallel(context, threads, j->chunk_count, "project", count_chunk, j);
+    if (status)
+        return status;
+    if (!place_items(j))
+        return gnoi_fail(context, GNO_ERROR_LIMIT, "too many polygons in too many tiles of the picture");
+    b->items = gnoi_malloc(context, b->item_count, sizeof *b->items);
+    if (!b->items)
+        return GNO_ERROR_MEMORY;
+    if (j->view->orthographic)
+        b->nearest_depth = nearest_depth(b);
+    return gnoi_parallel(context, threads, j->chunk_count, "project", fill_chunk, j);
+}
+
+gno_status gnoi_bins_build(const gno_scene *scene, const gnoi_view *view, int lines, int threads, gnoi_bins *bins)
+{
+    gno_context *context = scene->context;
+    const size_t polys = scene->prepared.poly_count;
+    gno_status status = GNO_ERROR_MEMORY;
+    job j;
+    memset(&j, 0, sizeof j);
+    memset(bins, 0, sizeof *bins);
+    j.scene = scene;
+    j.view = view;
+    j.bins = bins;
+    j.lines = lines;
+    bins->tiles_x = (view->width + GNOI_TILE_W - 1) / GNOI_TILE_W;
+    bins->tiles_y = (view->height + GNOI_TILE_H - 1) / GNOI_TILE_H;
+    bins->vertex_count = scene->vertex_count;
+    j.tile_count = (size_t)bins->tiles_x * (size_t)bins->tiles_y;
+    j.chunk_count = (polys + CHUNK - 1) / CHUNK;
+    threads = gnoi_thread_count(threads);
+    bins->vertices = gnoi_malloc(context, bins->vertex_count, sizeof *bins->vertices);
+    bins->start = gnoi_malloc(context, j.tile_count + 1, sizeof *bins->start);
+    j.ranges = gnoi_malloc(context, polys, sizeof *j.ranges);
+    j.counts = gnoi_calloc(context, j.chunk_count * j.tile_count, sizeof *j.counts);
+    j.outlines = gnoi_calloc(context, (size_t)threads, sizeof *j.outlines);
+    if (bins->vertices && bins->start && j.ranges && j.counts && j.outlines) {
+        for (int i = 0; i < threads; i++)
+            j.outlines[i].context = context;
+        status = run(&j, threads);
+        for (int i = 0; i < threads; i++)
+            gnoi_outline_free(&j.outlines[i]);
+    }
+    gnoi_free(context, j.ranges, polys, sizeof *j.ranges);
+    gnoi_free(context, j.counts, j.chunk_count * j.tile_count, sizeof *j.counts);
+    gnoi_free(context, j.outlines, (size_t)threads, sizeof *j.outlines);
+    if (status)
+        gnoi_bins_free(context, bins);
+    return status;
+}
+
+void gnoi_bins_free(gno_context *context, gnoi_bins *bins)
+{
+    size_t tiles = (size_t)bins->tiles_x * (size_t)bins->tiles_y;
+    gnoi_free(context, bins->vertices, bins->vertex_count, sizeof *bins->vertices);
+    gnoi_free(context, bins->start, tiles + 1, sizeof *bins->start);
+    gnoi_free(context, bins->items, bins->item_count, sizeof *bins->items);
+    memset(bins, 0, sizeof *bins);
+}

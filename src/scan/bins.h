@@ -1,0 +1,56 @@
+/* bins.h -- prepared polygons onto the picture, and which tiles each may touch.
+ *
+ * Place in the data flow: prepared polygons + view -> picture vertices, polygon numbers by tile -> tiles (engine).
+ * Polygons that reach behind the near plane or far out of the picture are cut in homogeneous coordinates (clip3.h).
+ * Invariants: a tile's list holds, in ascending order, every polygon that any sample line of the tile, or of the half
+ * row above and below it, may cross; it depends on nothing but the scene and the view.
+ */
+#ifndef GNOI_SCAN_BINS_H
+#define GNOI_SCAN_BINS_H
+
+#include "project/clip3.h"
+#include "project/view.h"
+#include "scene/scene.h"
+
+#define GNOI_TILE_W 32
+#define GNOI_TILE_H 32
+
+typedef struct gnoi_vertex {
+    double x, y; /* picture coordinates; x is HUGE_VAL where the vertex cannot be used without cutting */
+    float z;     /* nearness */
+} gnoi_vertex;
+
+typedef struct gnoi_bins {
+    int tiles_x, tiles_y;
+    gnoi_vertex *vertices;  /* one for each scene vertex */
+    size_t vertex_count;
+    uint32_t *start;        /* tiles+1 offsets into items */
+    uint32_t *items;
+    size_t item_count;
+    float nearest_depth;    /* orthographic: depth of the nearest vertex before the eye */
+} gnoi_bins;
+
+/* lines: sample lines per pixel row at the finest; polygons between two lines are left out. */
+gno_status gnoi_bins_build(const gno_scene *scene, const gnoi_view *view, int lines, int threads, gnoi_bins *bins);
+void gnoi_bins_free(gno_context *context, gnoi_bins *bins);
+
+/* Rings of one polygon in the picture, cut where need be. */
+typedef struct gnoi_outline {
+    gno_context *context;
+    size_t count, capacity; /* of points */
+    gnoi_hpoint *points;    /* x, y in the picture; w unused */
+    size_t ring_count, ring_capacity;
+    uint32_t *ring_end;
+    double x0, y0, x1, y1;  /* bounds */
+    float z0, z1;           /* least and greatest nearness of the corners */
+    int cut;                /* something was cut away */
+    size_t scratch_capacity;
+    gnoi_hpoint *scratch;
+} gnoi_outline;
+
+/* Sets the outline of a polygon; count is 0 when nothing of it can be seen. Returns 0 when memory fails. */
+int gnoi_outline_set(gnoi_outline *outline, const gno_scene *scene, const gnoi_view *view, const gnoi_vertex *vertices,
+                     const gnoi_poly *poly);
+void gnoi_outline_free(gnoi_outline *outline);
+
+#endif

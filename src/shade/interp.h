@@ -1,0 +1,26 @@
+/* interp.h -- normals and vertex intensities interpolated over a polygon, perspective-correctly.
+ *
+ * Place in the data flow: prepared polygon + view -> linear functions over the picture -> normals (phong) or weights
+ * (gouraud) at a sample. With homogeneous picture coordinates V_i = (X,Y,W) of a triangle's corners the weights at picture
+ * point p = (x,y,1) are proportional to p.(V_1 x V_2), p.(V_2 x V_0), p.(V_0 x V_1): linear in x and y, no division
+ * (Olano and Greer, "Triangle scan conversion using 2D homogeneous coordinates", 1997).
+ * Polygons of more than three corners use their fixed triangulation, so that turning the object changes nothing.
+ */
+#ifndef GNOI_SHADE_INTERP_H
+#define GNOI_SHADE_INTERP_H
+
+#include "project/view.h"
+#include "scene/scene.h"
+
+typedef struct gnoi_interp {
+    int ready;
+    uint32_t triangle_count, triangle; /* the one set now */
+    uint32_t corner[3];                /* its corners in the prepared corner arrays */
+    gnoi_screen_plane weight[3];       /* proportional to the corners' weights, >= 0 inside */
+    gnoi_screen_plane normal[3];       /* x, y, z of the interpolated normal, any length */
+} gnoi_interp;
+
+/* Makes `interp` valid for picture point (x,y) of `poly`: picks the triangle that holds it, or the nearest. */
+void gnoi_interp_seek(gnoi_interp *interp, const gno_scene *scene, const gnoi_view *view, const gnoi_poly *poly, double x, double y);
+
+#endif

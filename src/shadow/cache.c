@@ -1,0 +1,107 @@
+/* cache.c -- see cache.h. */
+#include "shadow/cache.h"
+#include "base/parallel.h"
+
+#define PI 3.14159265358979323846
+
+static void free_cache(gno_context *context, gnoi_shadow_cache *cache)
+{
+    for (size_t i = 0; cache->trees && i < cache->lamp_count; i++)
+        gnoi_tree_free(context, &cache->trees[i]);
+    gnoi_free(context, cache->trees, cache->lamp_count, sizeof *cache->trees);
+    gnoi_free(context, cache->lamps, cache->lamp_count, sizeof *cache->lamps);
+    gnoi_free(context, cache, 1, sizeof *cache);
+}
+
+static size_t lamps_of(const gno_light *light)
+{
+    return light->type == GNO_LIGHT_AREA ? (size_t)light->samples * (size_t)light->samples : 1;
+}
+
+static gnoi_lamp lamp_from(const gno_light *light)
+{
+    gnoi_lamp lamp;
+    lamp.directional = light->type == GNO_LIGHT_DIRECTIONAL;
+    lamp.spot = light->type == GNO_LIGHT_SPOT;
+    lamp.position = v3_from(light->position);
+    lamp.axis = v3_unit(v3_from(light->direction));
+    lamp.to_light = v3_scale(lamp.axis, -1);
+    lamp.cos_half_angle = cos(light->angle * PI / 360);
+    for (int k = 0; k < 3; k++)
+        lamp.intensity[k] = light->intensity[k];
+    lamp.falloff = light->falloff;
+    lamp.falloff_k = light->falloff_k;
+    lamp.distance_from_viewer = light->distance_from_viewer;
+    return lamp;
+}
+
+/* An area light is a grid of points at the centres of its parallelogram's cells, each with its share of the intensity. */
+static void add_area(const gno_light *light, gnoi_lamp *lamps)
+{
+    int n = light->samples;
+    for (int i = 0; i < n; i++)
+        for (int j = 0; j < n; j++) {
+            gnoi_lamp lamp = lamp_from(light);
+            lamp.position = v3_mad(lamp.position, v3_from(light->edge1), (i + 0.5) / n);
+            lamp.position = v3_mad(lamp.position, v3_from(light->edge2), (j + 0.5) / n);
+            for (int k = 0; k < 3; k++)
+                lamp.intensity[k] /= (double)n * n;
+            *lamps++ = lamp;
+        }
+}
+
+typedef struct job {
+    const gno_scene *scene;
+    gnoi_shadow_cache *cache;
+} job;
+
+static gno_status build_tree(void *user, int worker, size_t piece)
+{
+    job *j = user;
+    (void)worker;
+    return gnoi_tree_build(j->scene, &j->cache->lamps[piece], &j->cache->trees[piece]);
+}
+
+gno_status gnoi_shadow_cache_build(gno_scene *scene, int threads)
+{
+    gno_context *context = scene->context;
+    gnoi_shadow_cache *cache;
+    gno_status status = GNO_ERROR_MEMORY;
+    size_t n = 0;
+    job j;
+    if (scene->shadows)
+        return GNO_OK;
+    cache = gnoi_calloc(context, 1, sizeof *cache);
+    if (!cache)
+        return gnoi_fail(context, GNO_ERROR_MEMORY, "out of memory for the lights");
+    for (size_t i = 0; i < scene->light_count; i++)
+        cache->lamp_count += lamps_of(&scene->lights[i].light);
+    if (cache->lamp_count > GNO_MAX_LIGHTS) {
+        n = cache->lamp_count;
+        cache->lamp_count = 0;
+        free_cache(context, cache);
+        return gnoi_fail(context, GNO_ERROR_LIMIT, "%lu points of light in all; the limit is %d", (unsigned long)n, GNO_MAX_LIGHTS);
+    }
+    cache->lamps = gnoi_calloc(context, cache->lamp_count, sizeof *cache->lamps);
+    cache->trees = gnoi_calloc(context, cache->lamp_count, sizeof *cache->trees);
+    if (cache->lamps && cache->trees) {
+        for (size_t i = 0; i < scene->light_count; i++) {
+            const gno_light *light = &scene->lights[i].light;
+            if (light->type == GNO_LIGHT_AREA)
+                add_area(light, &cache->lamps[n]);
+            else
+                cache->lamps[n] = lamp_from(light);
+            n += lamps_of(light);
+        }
+        j.scene = scene;
+        j.cache = cache;
+        status = gnoi_parallel(context, threads, cache->lamp_count, "shadow matrix", build_tree, &j);
+    }
+    if (status) {
+        free_cache(context, cache);
+        return status == GNO_ERROR_MEMORY ? gnoi_fail(context, status, "out of memory for the shadow matrix") : status;
+    }
+    scene->shadows = cache;
+    scene->free_shadows = free_cache;
+    return GNO_OK;
+}

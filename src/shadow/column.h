@@ -1,0 +1,86 @@
+/* column.h -- one column of a light's binary shadow matrix, asked for by a receiver or a part of it, and the shadow
+ * polygons that its casters throw on the receiver, in picture coordinates.
+ *
+ * Place in the data flow: caster tree (tree.h) + receiver seen in a picture region -> casters by exact tests -> shadow
+ * polygons -> their intervals on a sample line -> gno_span_split.
+ * A shadow polygon is caster x one matrix: the projection from the light onto the receiver's plane, then the view. In
+ * forms: the shadow of P has F = F(P) H - F(L) h, F any of the view's homogeneous forms x, y, w, h and H the heights of P and
+ * of the light over the receiver's plane (Blinn, "Me and my (fake) shadow", 1988). The caster is cut first where it reaches
+ * behind the receiver's plane, above the light, or where its shadow falls behind the eye.
+ * Invariants: a caster that can darken a point of the region by more than the coplanarity tolerance is in the column
+ * (a zero is certain); polygons on the receiver's plane never are.
+ */
+#ifndef GNOI_SHADOW_COLUMN_H
+#define GNOI_SHADOW_COLUMN_H
+
+#include "project/clip3.h"
+#include "project/view.h"
+#include "shadow/tree.h"
+
+typedef enum gnoi_column_state {
+    GNOI_COLUMN_UNKNOWN = 0,
+    GNOI_COLUMN_LIT,   /* no shadow polygon meets the region */
+    GNOI_COLUMN_DARK,  /* in its own shadow, or one opaque caster covers the region */
+    GNOI_COLUMN_SPLIT  /* spans must be split */
+} gnoi_column_state;
+
+/* An edge of a polygon in picture coordinates, from its upper end (x,y) down to y1; crosses lines y <= line < y1. */
+typedef struct gnoi_edge {
+    double x, y, y1, slope;
+} gnoi_edge;
+
+static inline double gnoi_edge_at(const gnoi_edge *e, double y) { return e->x + (y - e->y) * e->slope; }
+
+typedef struct gnoi_caster {
+    float y0, y1;      /* lines that may cross it */
+    uint32_t edge, edge_count;
+    uint32_t material; /* for its transmission */
+} gnoi_caster;
+
+typedef struct gnoi_column {
+    gnoi_column_state state;
+    uint32_t caster, caster_count; /* into gnoi_columns.casters */
+} gnoi_column;
+
+/* Storage of all columns of one tile, and scratch; one for each worker. */
+typedef struct gnoi_columns {
+    gno_context *context;
+    size_t caster_count, caster_capacity;
+    gnoi_caster *casters;
+    size_t edge_count, edge_capacity;
+    gnoi_edge *edges;
+    gnoi_list found;                 /* candidates of the tree */
+    size_t point_capacity;
+    gnoi_hpoint *points;             /* two halves: before and after a cut */
+    size_t interval_count, interval_capacity;
+    gno_shadow_interval *intervals;  /* of the line asked for last */
+    size_t crossing_capacity;
+    double *crossings;
+    double asked, ones, full;        /* statistics */
+} gnoi_columns;
+
+/* The part of a receiver that is asked about. */
+typedef struct gnoi_receiver {
+    const gnoi_poly *poly;
+    uint32_t index;           /* of poly among the prepared polygons */
+    double side;              /* gnoi_view_side of its plane */
+    gnoi_screen_plane nearness;
+    double tolerance;         /* distance from its plane within which things lie on it */
+    double x0, y0, x1, y1;    /* picture region that holds the visible part */
+    int whole;                /* the polygon lies wholly inside the region, before the near plane */
+} gnoi_receiver;
+
+/* Finds the column of `receiver` for `lamp`. Returns 0 when memory fails. */
+int gnoi_column_find(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_tree *tree,
+                     const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column);
+
+/* Collects in columns->intervals where the column's shadow polygons and, for a spot, the dark outside of its cone meet line y
+ * between xa and xb (intervals may reach beyond). Returns 0 when memory fails. */
+int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver,
+                          const gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns);
+
+/* Makes the store empty for the next tile; keeps its memory. */
+void gnoi_columns_reset(gnoi_columns *columns);
+void gnoi_columns_free(gnoi_columns *columns);
+
+#endif
