@@ -1,0 +1,159 @@
+/* info.c -- gnomon info: what is in a scene, as a table or as JSON.
+ *
+ * Place: arguments -> gno_scene_load -> gno_scene_prepare (which finds the problems) -> gathered in a `summary` -> printed
+ * by info_text.c or info_json.c.
+ */
+#include "cli/cli.h"
+#include "cli/info.h"
+#include "cli/options.h"
+#include "cli/progress.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum option_id { SET, THREADS, JSON, QUIET, HELP };
+
+static const option options[] = {
+    [SET] = {"set", 0, "KEY=VALUE", "override a scene value, as in gnomon render"},
+    [THREADS] = {"threads", 0, "N", "0, the default: one per processor"},
+    [JSON] = {"json", 0, NULL, "one JSON object instead of the table"},
+    [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
+    [HELP] = {"help", 'h', NULL, "this text"},
+};
+
+enum { OPTIONS = sizeof options / sizeof options[0] };
+
+typedef struct job {
+    const char *scene_path;
+    gno_setting *settings;
+    size_t setting_count;
+    int threads, json, quiet;
+} job;
+
+static int help(void)
+{
+    printf("usage: gnomon info [OPTIONS] SCENE\n\n"
+           "Tells what is in SCENE, a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb):\n"
+           "counts, bounds, camera, lights, materials, and what is wrong with its polygons.\n\noptions:\n");
+    option_print(options, OPTIONS);
+    printf("\nexamples:\n"
+           "  gnomon info town.yaml\n"
+           "  gnomon info --json bunny.obj | jq .counts.polygons\n");
+    return close_output();
+}
+
+/* Returns an exit status, or -1 to go on. */
+static int read_arguments(job *work, int argc, char **argv)
+{
+    option_reader reader = option_reader_make("info", options, OPTIONS, argc, argv);
+    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
+        switch (id) {
+        case OPTION_WRONG:
+            return EXIT_USAGE;
+        case OPTION_OPERAND:
+            if (work->scene_path != NULL) {
+                return usage("info", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
+            }
+            work->scene_path = reader.value;
+            break;
+        case SET:
+            if (!parse_setting(reader.value, &work->settings[work->setting_count++])) {
+                return usage("info", "--set %s: not KEY=VALUE", reader.value);
+            }
+            break;
+        case THREADS:
+            if (!parse_int(reader.value, 0, GNO_MAX_THREADS, &work->threads)) {
+                return usage("info", "--threads %s: not a number from 0 to %d", reader.value, GNO_MAX_THREADS);
+            }
+            break;
+        case JSON:
+            work->json = 1;
+            break;
+        case QUIET:
+            work->quiet = 1;
+            break;
+        default:
+            return help();
+        }
+    }
+    return work->scene_path != NULL ? -1 : usage("info", "no scene given");
+}
+
+static gno_status gather(const job *work, gno_scene *scene, summary *found)
+{
+    const gno_status status = gno_scene_prepare(scene, work->threads, &found->problems);
+    if (status != GNO_OK) {
+        return status;
+    }
+    found->path = work->scene_path;
+    found->scene = scene;
+    found->counts = gno_scene_count(scene);
+    found->has_bounds = gno_scene_bounds(scene, found->lower, found->upper);
+    found->material_polygons = calloc(found->counts.materials + 1, sizeof *found->material_polygons);
+    if (found->material_polygons == NULL) {
+        return gno_context_fail(gno_scene_context(scene), GNO_ERROR_MEMORY, "out of memory");
+    }
+    for (size_t i = 0; i < found->counts.polygons; i++) {
+        gno_polygon polygon;
+        if (gno_scene_polygon(scene, i, &polygon) == GNO_OK) {
+            found->material_polygons[polygon.material]++;
+            found->holes += polygon.ring_count - 1;
+        }
+    }
+    return GNO_OK;
+}
+
+static int run_job(const job *work)
+{
+    progress shown = progress_make(work->quiet);
+    const gno_context_def def = progress_context_def(&shown);
+    gno_context *context = NULL;
+    gno_scene *scene = NULL;
+    summary found;
+    memset(&found, 0, sizeof found);
+    if (gno_context_create(&def, &context) != GNO_OK) {
+        say("out of memory");
+        return EXIT_FAILED;
+    }
+    gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, &scene);
+    if (status == GNO_OK) {
+        status = gather(work, scene, &found);
+    }
+    progress_clear(&shown);
+    int exit_status = EXIT_FAILED;
+    if (status == GNO_OK) {
+        if (work->json) {
+            info_json(&found);
+        } else {
+            info_text(&found);
+        }
+        exit_status = close_output();
+    } else {
+        say("%s", gno_context_message(context));
+    }
+    free(found.material_polygons);
+    gno_scene_destroy(scene);
+    gno_context_destroy(context);
+    return exit_status;
+}
+
+static int run(int argc, char **argv)
+{
+    job work;
+    memset(&work, 0, sizeof work);
+    /* No more settings than arguments; one more so that the size is never zero. */
+    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
+    if (work.settings == NULL) {
+        say("out of memory");
+        return EXIT_FAILED;
+    }
+    int status = read_arguments(&work, argc, argv);
+    if (status < 0) {
+        status = run_job(&work);
+    }
+    free(work.settings);
+    return status;
+}
+
+const command command_info = {"info", "tell what is in a scene", run};

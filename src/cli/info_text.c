@@ -1,0 +1,162 @@
+/* info_text.c -- gnomon info as a table for people; see info.h. */
+#include "cli/info.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* One name for values outside the list keeps the printers free of checks. */
+static const char *pick(const char *const *names, int count, int index)
+{
+    return index >= 0 && index < count ? names[index] : "unknown";
+}
+
+const char *light_type_name(gno_light_type type)
+{
+    static const char *const names[] = {"point", "directional", "spot", "area"};
+    return pick(names, 4, (int)type);
+}
+
+const char *falloff_name(gno_falloff falloff)
+{
+    static const char *const names[] = {"none", "linear", "inverse_square"};
+    return pick(names, 3, (int)falloff);
+}
+
+const char *shading_name(gno_shading shading)
+{
+    static const char *const names[] = {"flat", "constant", "gouraud", "phong"};
+    return pick(names, 4, (int)shading);
+}
+
+const char *camera_type_name(gno_camera_type type)
+{
+    static const char *const names[] = {"perspective", "orthographic"};
+    return pick(names, 2, (int)type);
+}
+
+static void point(const char *name, const double value[3])
+{
+    printf("%s (%g, %g, %g)", name, value[0], value[1], value[2]);
+}
+
+static void colour(const char *name, const double value[3])
+{
+    if (value[0] == value[1] && value[1] == value[2]) {
+        printf("%s %g", name, value[0]);
+    } else {
+        printf("%s %g %g %g", name, value[0], value[1], value[2]);
+    }
+}
+
+/* Names come from files and must not reach the terminal as commands. */
+static void name_text(const char *text)
+{
+    for (const unsigned char *c = (const unsigned char *)text; *c != '\0'; c++) {
+        putchar(*c < 0x20 || *c == 0x7F ? '?' : *c);
+    }
+}
+
+static void print_view(const summary *found)
+{
+    const gno_image_def image = gno_scene_image(found->scene);
+    const gno_camera camera = gno_scene_camera(found->scene);
+    double ambient[3];
+    gno_scene_ambient(found->scene, ambient);
+    printf("picture    %d x %d, ", image.width, image.height);
+    colour("background", image.background);
+    printf("\ncamera     %s, ", camera_type_name(camera.type));
+    point("eye", camera.eye);
+    point(", target", camera.target);
+    point(", up", camera.up);
+    if (camera.type == GNO_CAMERA_PERSPECTIVE) {
+        printf(", fov %g\n", camera.fov);
+    } else {
+        printf(", height %g\n", camera.height);
+    }
+    colour("ambient   ", ambient);
+    putchar('\n');
+}
+
+static void print_lights(const summary *found)
+{
+    printf("lights     %zu\n", found->counts.lights);
+    for (size_t i = 0; i < found->counts.lights; i++) {
+        gno_light light;
+        const char *name = NULL;
+        if (gno_scene_light(found->scene, (int)i, &light, &name) != GNO_OK) {
+            continue;
+        }
+        printf("  %-4zu ", i);
+        name_text(name != NULL && name[0] != '\0' ? name : "(no name)");
+        printf(": %s", light_type_name(light.type));
+        if (light.type != GNO_LIGHT_DIRECTIONAL) {
+            point(", position", light.position);
+        }
+        if (light.type == GNO_LIGHT_DIRECTIONAL || light.type == GNO_LIGHT_SPOT) {
+            point(", direction", light.direction);
+        }
+        if (light.type == GNO_LIGHT_SPOT) {
+            printf(", angle %g", light.angle);
+        }
+        if (light.type == GNO_LIGHT_AREA) {
+            point(", edge1", light.edge1);
+            point(", edge2", light.edge2);
+            printf(", %d x %d points", light.samples, light.samples);
+        }
+        colour(", intensity", light.intensity);
+        if (light.falloff != GNO_FALLOFF_NONE) {
+            printf(", falloff %s", falloff_name(light.falloff));
+        }
+        putchar('\n');
+    }
+}
+
+static void print_materials(const summary *found)
+{
+    printf("materials  %zu\n", found->counts.materials);
+    for (size_t i = 0; i < found->counts.materials; i++) {
+        gno_material material;
+        if (gno_scene_material(found->scene, (int)i, &material) != GNO_OK) {
+            continue;
+        }
+        printf("  %-4zu %zu polygons: %s", i, found->material_polygons[i], shading_name(material.shading));
+        colour(", ambient", material.ambient);
+        colour(", diffuse", material.diffuse);
+        colour(", specular", material.specular);
+        printf(", shininess %g", material.shininess);
+        if (material.transmission[0] > 0.0 || material.transmission[1] > 0.0 || material.transmission[2] > 0.0) {
+            colour(", transmission", material.transmission);
+        }
+        printf("%s\n", material.two_sided ? "" : ", one-sided");
+    }
+}
+
+void info_text(const summary *found)
+{
+    const gno_scene_counts *c = &found->counts;
+    printf("scene      ");
+    name_text(found->path);
+    printf("\ncontents   %zu objects, %zu polygons with %zu holes, %zu corners\n", c->objects, c->polygons, found->holes, c->corners);
+    printf("           %zu vertices, %zu normals, %zu texture coordinates\n", c->vertices, c->normals, c->texcoords);
+    if (found->has_bounds) {
+        point("bounds    ", found->lower);
+        point(" to", found->upper);
+        putchar('\n');
+    } else {
+        printf("bounds     none: there is no polygon\n");
+    }
+    print_view(found);
+    print_lights(found);
+    print_materials(found);
+    if (found->problems.degenerate == 0 && found->problems.non_planar == 0) {
+        printf("problems   none\n");
+        return;
+    }
+    printf("problems\n");
+    if (found->problems.degenerate > 0) {
+        printf("  %zu polygons without area: skipped\n", found->problems.degenerate);
+    }
+    if (found->problems.non_planar > 0) {
+        printf("  %zu polygons that are not planar: split into triangles\n", found->problems.non_planar);
+    }
+}

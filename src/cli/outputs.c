@@ -1,0 +1,96 @@
+/* outputs.c -- see outputs.h. */
+#include "cli/outputs.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+typedef struct kind {
+    const char *extension;
+    int depths[2];
+} kind;
+
+static const kind kinds[] = {{".png", {8, 16}}, {".exr", {16, 32}}, {".pfm", {32, 32}}};
+
+enum { KINDS = sizeof kinds / sizeof kinds[0] };
+
+static const kind *kind_of(const char *path)
+{
+    if (strcmp(path, "-") == 0) {
+        return &kinds[0];
+    }
+    const char *slash = strrchr(path, '/');
+    const char *name = slash != NULL ? slash + 1 : path;
+    const char *dot = strrchr(name, '.');
+    for (int i = 0; dot != NULL && i < KINDS; i++) {
+        if (strcasecmp(dot, kinds[i].extension) == 0) {
+            return &kinds[i];
+        }
+    }
+    return NULL;
+}
+
+static int check_place(const char *path)
+{
+    struct stat found;
+    const char *slash = strrchr(path, '/');
+    if (strcmp(path, "-") == 0) {
+        if (isatty(STDOUT_FILENO)) {
+            say("standard output is a terminal: send the picture to a file or a pipe");
+            return EXIT_FAILED;
+        }
+        return EXIT_DONE;
+    }
+    if (stat(path, &found) == 0 && (S_ISDIR(found.st_mode) || access(path, W_OK) != 0)) {
+        say("%s: cannot be written: %s", path, strerror(S_ISDIR(found.st_mode) ? EISDIR : errno));
+        return EXIT_FAILED;
+    }
+    if (slash == NULL) {
+        return EXIT_DONE;
+    }
+    const size_t length = slash == path ? 1 : (size_t)(slash - path);
+    char *folder = malloc(length + 1);
+    if (folder == NULL) {
+        return EXIT_DONE;
+    }
+    memcpy(folder, path, length);
+    folder[length] = '\0';
+    const int missing = stat(folder, &found) != 0;
+    if (missing) {
+        say("%s: cannot be written: folder %s: %s", path, folder, strerror(errno));
+    }
+    free(folder);
+    return missing ? EXIT_FAILED : EXIT_DONE;
+}
+
+int outputs_check(outputs *files, int depth, const char *command_name)
+{
+    int standard = 0, deep = 0;
+    for (int i = 0; i < files->count; i++) {
+        const kind *format = kind_of(files->paths[i]);
+        if (format == NULL) {
+            return usage(command_name, "%s: the extension is not one of .png, .exr, .pfm", files->paths[i]);
+        }
+        const int has = depth == format->depths[0] || depth == format->depths[1];
+        files->depths[i] = has ? (gno_pixel_depth)depth : GNO_DEPTH_DEFAULT;
+        deep += has;
+        standard += strcmp(files->paths[i], "-") == 0;
+    }
+    if (standard > 1) {
+        return usage(command_name, "standard output can take one picture only");
+    }
+    if (depth != 0 && deep == 0) {
+        return usage(command_name, "--depth %d: PNG has 8 or 16 bits, EXR 16 or 32, PFM 32", depth);
+    }
+    for (int i = 0; i < files->count; i++) {
+        const int status = check_place(files->paths[i]);
+        if (status != EXIT_DONE) {
+            return status;
+        }
+    }
+    return EXIT_DONE;
+}

@@ -1,0 +1,21 @@
+/* outputs.h -- the picture files of one run, checked before the work starts.
+ *
+ * Place: under render.c. Rendering can take long; a misspelt extension or folder must show up before it, not after.
+ */
+#ifndef GNOMON_CLI_OUTPUTS_H
+#define GNOMON_CLI_OUTPUTS_H
+
+#include "cli/cli.h"
+
+enum { MOST_OUTPUTS = 16 };
+
+typedef struct outputs {
+    int count;
+    const char *paths[MOST_OUTPUTS];
+    gno_pixel_depth depths[MOST_OUTPUTS]; /* the wished depth where the format has it, its default elsewhere */
+} outputs;
+
+/* Checks names and depth (0: none wished); returns an exit status, its message being out. */
+int outputs_check(outputs *files, int depth, const char *command_name);
+
+#endif

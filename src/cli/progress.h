@@ -1,0 +1,30 @@
+/* progress.h -- what a command shows while it works: a bar on a terminal, and the libraries' remarks.
+ *
+ * Place: under the commands; the callbacks of their gno_context. Standard error only.
+ */
+#ifndef GNOMON_CLI_PROGRESS_H
+#define GNOMON_CLI_PROGRESS_H
+
+#include "cli/cli.h"
+
+typedef struct progress {
+    int quiet;       /* no bar, no remarks */
+    int terminal;    /* standard error is one that understands \r */
+    double begun;    /* seconds */
+    double drawn;    /* when the bar was last drawn, 0: it is not on the screen */
+    char stage[32];  /* of the bar, and when it began */
+    double stage_begun, stage_fraction;
+} progress;
+
+progress progress_make(int quiet);
+
+/* A context definition with this progress as its callbacks. */
+gno_context_def progress_context_def(progress *shown);
+
+/* Takes the bar off the screen, before something else is printed. */
+void progress_clear(progress *shown);
+
+/* Monotonic wall-clock seconds. */
+double seconds_now(void);
+
+#endif

@@ -1,0 +1,338 @@
+/* render.c -- gnomon render: a scene file to pictures.
+ *
+ * Place: arguments -> settings -> gno_scene_load -> gno_render -> gno_picture_write for every -o -> --stats.
+ */
+#include "cli/cli.h"
+#include "cli/interrupt.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+#include "cli/stats.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+enum option_id { OUTPUT, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, SET, STATS, QUIET, HELP };
+
+static const option options[] = {
+    [OUTPUT] = {"output", 'o', "FILE", "picture, by extension: .png (sRGB), .exr (linear), .pfm (linear);\n"
+                                       "\"-\" is a PNG on standard output; may be given several times;\n"
+                                       "without it the scene's name with .png, in the current folder"},
+    [SIZE] = {"size", 0, "WxH", "pixels, instead of the scene's"},
+    [LINES] = {"lines", 0, "N or B:N", "sample lines per pixel row: N everywhere, or B and N where the\n"
+                                       "picture varies (N an odd multiple of B)"},
+    [THREADS] = {"threads", 0, "N", "0, the default: one per processor; the picture is the same"},
+    [EXPOSURE] = {"exposure", 0, "X", "factor on all values of the picture (1)"},
+    [DEPTH] = {"depth", 0, "BITS", "8 or 16 for PNG (8), 16 or 32 for EXR (16), 32 for PFM"},
+    [TERMINATOR] = {"terminator", 0, "KIND", "shadows on smooth-shaded meshes: exact, as the flat facets cast\n"
+                                             "them (default), or smooth"},
+    [ENGINE] = {"engine", 0, "NAME", "scanline (default)"},
+    [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. camera.eye=[1,2,3]; may be given\n"
+                                    "several times"},
+    [STATS] = {"stats", 0, "FILE", "one JSON object: seconds per stage, counts, peak memory; \"-\" is\n"
+                                   "standard output"},
+    [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
+    [HELP] = {"help", 'h', NULL, "this text"},
+};
+
+enum { OPTIONS = sizeof options / sizeof options[0] };
+
+typedef struct job {
+    const char *scene_path;
+    outputs files;
+    char *default_output;
+    gno_setting *settings;
+    size_t setting_count;
+    int width, height; /* 0: the scene's */
+    int depth;
+    double exposure;
+    gno_render_def def;
+    const char *stats_path;
+    int quiet;
+} job;
+
+static int help(void)
+{
+    const gno_render_def def = gno_render_def_default();
+    printf("usage: gnomon render [OPTIONS] SCENE [-o FILE]...\n\n"
+           "Draws SCENE, a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\noptions:\n");
+    option_print(options, OPTIONS);
+    printf("\nThe default of --lines is %d:%d.\n\n"
+           "examples:\n"
+           "  gnomon render town.yaml                                    town.png\n"
+           "  gnomon render town.yaml -o town.png -o town.exr --size 1920x1080\n"
+           "  gnomon render bunny.obj --set camera.eye=[0,-3,1] --set 'image.background=[1,1,1]'\n"
+           "  gnomon render town.yaml -o - --size 320x180 | display -\n"
+           "  gnomon render town.yaml --threads 1 --stats -              how long each stage took\n",
+           def.base_lines, def.lines);
+    return close_output();
+}
+
+static int parse_size(const char *text, job *work)
+{
+    char copy[32];
+    snprintf(copy, sizeof copy, "%s", text);
+    char *x = strpbrk(copy, "xX");
+    if (x == NULL || strlen(text) >= sizeof copy) {
+        return 0;
+    }
+    *x = '\0';
+    return parse_int(copy, 1, GNO_MAX_IMAGE_SIDE, &work->width) && parse_int(x + 1, 1, GNO_MAX_IMAGE_SIDE, &work->height);
+}
+
+static int parse_lines(const char *text, gno_render_def *def)
+{
+    char copy[32];
+    snprintf(copy, sizeof copy, "%s", text);
+    char *colon = strchr(copy, ':');
+    if (strlen(text) >= sizeof copy) {
+        return 0;
+    }
+    if (colon != NULL) {
+        *colon = '\0';
+    }
+    if (!parse_int(copy, 1, GNO_MAX_LINES, &def->base_lines) ||
+        !parse_int(colon != NULL ? colon + 1 : copy, 1, GNO_MAX_LINES, &def->lines)) {
+        return 0;
+    }
+    return def->lines % def->base_lines == 0 && def->lines / def->base_lines % 2 == 1;
+}
+
+/* Returns an exit status, or -1 to go on. */
+static int take_option(job *work, int id, char *value)
+{
+    const char *name = options[id].name;
+    switch (id) {
+    case OUTPUT:
+        if (work->files.count == MOST_OUTPUTS) {
+            return usage("render", "more than %d outputs", MOST_OUTPUTS);
+        }
+        work->files.paths[work->files.count++] = value;
+        return -1;
+    case SIZE:
+        return parse_size(value, work) ? -1
+                                       : usage("render", "--size %s: not WIDTHxHEIGHT, each from 1 to %d", value, GNO_MAX_IMAGE_SIDE);
+    case LINES:
+        return parse_lines(value, &work->def)
+                   ? -1
+                   : usage("render", "--lines %s: not a number from 1 to %d, nor B:N with N an odd multiple of B", value, GNO_MAX_LINES);
+    case THREADS:
+        return parse_int(value, 0, GNO_MAX_THREADS, &work->def.threads)
+                   ? -1
+                   : usage("render", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
+    case EXPOSURE:
+        return parse_real(value, &work->exposure) && work->exposure >= 0.0 ? -1 : usage("render", "--exposure %s: not a number, 0 or more", value);
+    case DEPTH:
+        return parse_int(value, 8, 32, &work->depth) && (work->depth == 8 || work->depth == 16 || work->depth == 32)
+                   ? -1
+                   : usage("render", "--depth %s: not one of 8, 16, 32", value);
+    case TERMINATOR:
+        work->def.terminator = strcmp(value, "smooth") == 0 ? GNO_TERMINATOR_SMOOTH : GNO_TERMINATOR_EXACT;
+        return strcmp(value, "exact") == 0 || strcmp(value, "smooth") == 0 ? -1
+                                                                           : usage("render", "--terminator %s: not one of exact, smooth", value);
+    case ENGINE:
+        return strcmp(value, "scanline") == 0 ? -1 : usage("render", "--engine %s: not one of scanline", value);
+    case SET:
+        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("render", "--set %s: not KEY=VALUE", value);
+    case STATS:
+        work->stats_path = value;
+        return -1;
+    case QUIET:
+        work->quiet = 1;
+        return -1;
+    case HELP:
+        return help();
+    default:
+        return usage("render", "--%s is not known here", name);
+    }
+}
+
+/* folder/town.yaml -> town.png */
+static char *default_output(const char *scene_path)
+{
+    const char *slash = strrchr(scene_path, '/');
+    const char *name = slash != NULL ? slash + 1 : scene_path;
+    const char *dot = strrchr(name, '.');
+    const size_t length = dot != NULL && dot > name ? (size_t)(dot - name) : strlen(name);
+    char *path = malloc(length + sizeof ".png");
+    if (path != NULL) {
+        memcpy(path, name, length);
+        memcpy(path + length, ".png", sizeof ".png");
+    }
+    return path;
+}
+
+/* Returns an exit status, or -1 to go on. */
+static int read_arguments(job *work, int argc, char **argv)
+{
+    option_reader reader = option_reader_make("render", options, OPTIONS, argc, argv);
+    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
+        if (id == OPTION_WRONG) {
+            return EXIT_USAGE;
+        }
+        if (id == OPTION_OPERAND) {
+            if (work->scene_path != NULL) {
+                return usage("render", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
+            }
+            work->scene_path = reader.value;
+            continue;
+        }
+        const int status = take_option(work, id, reader.value);
+        if (status >= 0) {
+            return status;
+        }
+    }
+    if (work->scene_path == NULL) {
+        return usage("render", "no scene given");
+    }
+    if (work->files.count == 0) {
+        work->default_output = default_output(work->scene_path);
+        if (work->default_output == NULL) {
+            say("out of memory");
+            return EXIT_FAILED;
+        }
+        work->files.paths[work->files.count++] = work->default_output;
+    }
+    for (int i = 0; i < work->files.count; i++) {
+        if (work->stats_path != NULL && strcmp(work->stats_path, "-") == 0 && strcmp(work->files.paths[i], "-") == 0) {
+            return usage("render", "standard output cannot take both the picture and --stats");
+        }
+    }
+    const int status = outputs_check(&work->files, work->depth, "render");
+    return status != EXIT_DONE ? status : -1;
+}
+
+static int report(gno_context *context, progress *shown)
+{
+    progress_clear(shown);
+    if (interrupt_signal() != 0) {
+        say("interrupted; nothing half done is left");
+        return EXIT_SIGNAL + interrupt_signal();
+    }
+    say("%s", gno_context_message(context));
+    return EXIT_FAILED;
+}
+
+static gno_status load(const job *work, gno_context *context, gno_scene **scene)
+{
+    gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, scene);
+    if (status == GNO_OK && work->width != 0) {
+        gno_image_def image = gno_scene_image(*scene);
+        image.width = work->width;
+        image.height = work->height;
+        status = gno_scene_set_image(*scene, &image);
+    }
+    return status;
+}
+
+/* Standard output leaves nothing behind, and a reader that does not read could hold it up for ever: there a signal ends the
+ * program at once. A file is finished, which takes little time, and the program ends after it. */
+static gno_status write_pictures(const job *work, gno_context *context, const gno_image_def *image, const float *rgb)
+{
+    gno_picture_def def = gno_picture_def_default();
+    def.exposure = work->exposure;
+    for (int i = 0; i < work->files.count; i++) {
+        const int standard = strcmp(work->files.paths[i], "-") == 0;
+        if (interrupt_signal() != 0) {
+            return gno_context_fail(context, GNO_ERROR_CANCELLED, "interrupted");
+        }
+        if (standard) {
+            interrupt_release();
+        }
+        def.depth = work->files.depths[i];
+        const gno_status status = gno_picture_write(context, work->files.paths[i], &def, image->width, image->height, rgb);
+        if (status != GNO_OK) {
+            return status;
+        }
+        if (standard) {
+            interrupt_catch();
+        }
+    }
+    return interrupt_signal() == 0 ? GNO_OK : gno_context_fail(context, GNO_ERROR_CANCELLED, "interrupted");
+}
+
+static int run_scene(const job *work, gno_context *context, gno_scene *scene, progress *shown, double begun)
+{
+    const gno_image_def image = gno_scene_image(scene);
+    const size_t bytes = (size_t)image.width * (size_t)image.height * 3 * sizeof(float);
+    run_stats stats;
+    memset(&stats, 0, sizeof stats);
+    stats.scene = work->scene_path;
+    stats.width = image.width;
+    stats.height = image.height;
+    stats.threads = work->def.threads > 0 ? work->def.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    stats.load_seconds = seconds_now() - begun;
+    /* Through the context, so that the picture is part of the peak memory told by --stats. */
+    float *rgb = gno_context_realloc(context, NULL, 0, bytes);
+    if (rgb == NULL) {
+        say("out of memory for a picture of %d x %d (%.1f GB)", image.width, image.height, (double)bytes * 1e-9);
+        return EXIT_FAILED;
+    }
+    const double rendered_from = seconds_now();
+    interrupt_catch();
+    gno_status status = gno_render(scene, &work->def, rgb, &stats.engine);
+    progress_clear(shown);
+    const double written_from = seconds_now();
+    if (status == GNO_OK) {
+        status = write_pictures(work, context, &image, rgb);
+    }
+    const double ended = seconds_now();
+    gno_context_realloc(context, rgb, bytes, 0);
+    if (status != GNO_OK) {
+        return report(context, shown);
+    }
+    interrupt_release();
+    stats.render_seconds = written_from - rendered_from;
+    stats.write_seconds = ended - written_from;
+    stats.total_seconds = ended - begun;
+    gno_context_memory(context, &stats.peak_memory);
+    if (shown->terminal && !work->quiet) {
+        for (int i = 0; i < work->files.count; i++) {
+            say("%s: %d x %d in %.2f s", work->files.paths[i], image.width, image.height, stats.total_seconds);
+        }
+    }
+    return work->stats_path != NULL ? stats_write(work->stats_path, &stats) : EXIT_DONE;
+}
+
+static int run_job(const job *work)
+{
+    progress shown = progress_make(work->quiet);
+    const double begun = seconds_now();
+    const gno_context_def def = progress_context_def(&shown);
+    gno_context *context = NULL;
+    gno_scene *scene = NULL;
+    if (gno_context_create(&def, &context) != GNO_OK) {
+        say("out of memory");
+        return EXIT_FAILED;
+    }
+    const int status = load(work, context, &scene) == GNO_OK ? run_scene(work, context, scene, &shown, begun) : report(context, &shown);
+    gno_scene_destroy(scene);
+    gno_context_destroy(context);
+    return status;
+}
+
+static int run(int argc, char **argv)
+{
+    job work;
+    memset(&work, 0, sizeof work);
+    work.exposure = 1.0;
+    work.def = gno_render_def_default();
+    /* No more settings than arguments; one more so that the size is never zero. */
+    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
+    int status = EXIT_FAILED;
+    if (work.settings == NULL) {
+        say("out of memory");
+    } else {
+        status = read_arguments(&work, argc, argv);
+        if (status < 0) {
+            status = run_job(&work);
+        }
+    }
+    free(work.settings);
+    free(work.default_output);
+    return status;
+}
+
+const command command_render = {"render", "draw a scene: PNG, OpenEXR, PFM", run};

@@ -1,0 +1,18 @@
+/* stats.h -- the JSON object of --stats. Place: end of render.c. */
+#ifndef GNOMON_CLI_STATS_H
+#define GNOMON_CLI_STATS_H
+
+#include "cli/cli.h"
+
+typedef struct run_stats {
+    const char *scene;
+    int width, height, threads;
+    gno_stats engine;
+    double load_seconds, render_seconds, write_seconds, total_seconds;
+    size_t peak_memory;
+} run_stats;
+
+/* To a file, whole or not at all, or "-" for standard output; says what went wrong. Returns an exit status. */
+int stats_write(const char *path, const run_stats *stats);
+
+#endif
