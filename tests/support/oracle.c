@@ -319,6 +319,15 @@ static const face *visible(const oracle *o, const double origin[3], const double
     return best;
 }
 
+/* Does the face lie on the other's plane, corner by corner? Such a one casts no shadow on it. A face that only touches the
+ * plane does, up to the line of contact. */
+static int lies_on(const oracle *o, const face *a, const face *plane)
+{
+    for (unsigned i = a->p.ring_start[0]; i < a->p.ring_start[1]; i++)
+        if (fabs(dot(plane->n, corner(a, i)) + plane->d) > o->tolerance) return 0;
+    return 1;
+}
+
 /* What passes from the lamp to a point of the receiver: the product of the transmissions of everything between. */
 static void passes(const oracle *o, const lamp *l, const face *receiver, const double point[3], double light[3])
 {
@@ -328,8 +337,7 @@ static void passes(const oracle *o, const lamp *l, const face *receiver, const d
     light[0] = light[1] = light[2] = 1;
     for (size_t i = 0; i < o->face_count; i++) {
         const face *a = &o->faces[i];
-        if (a == receiver || meet(a, point, to, far ? INFINITY : 1, at) < 0) continue;
-        if (fabs(dot(receiver->n, at) + receiver->d) <= o->tolerance) continue;
+        if (a == receiver || meet(a, point, to, far ? INFINITY : 1, at) < 0 || lies_on(o, a, receiver)) continue;
         for (int k = 0; k < 3; k++) light[k] *= a->m.transmission[k];
     }
 }
