@@ -18,7 +18,7 @@ static const option options[] = {
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, as in gnomon render"},
     [THREADS] = {"threads", 0, "N", "0, the default: one per processor"},
     [JSON] = {"json", 0, NULL, "one JSON object instead of the table"},
-    [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
+    [QUIET] = {"quiet", 'q', NULL, "no progress bar"},
     [HELP] = {"help", 'h', NULL, "this text"},
 };
 
@@ -87,7 +87,6 @@ static gno_status gather(const job *work, gno_scene *scene, summary *found)
         return status;
     }
     found->path = work->scene_path;
-    found->scene = scene;
     found->counts = gno_scene_count(scene);
     found->has_bounds = gno_scene_bounds(scene, found->lower, found->upper);
     found->material_polygons = calloc(found->counts.materials + 1, sizeof *found->material_polygons);
@@ -104,20 +103,51 @@ static gno_status gather(const job *work, gno_scene *scene, summary *found)
     return GNO_OK;
 }
 
+/* The reader's remarks belong into the report, so they are kept instead of printed; a remark that memory is too short for is
+ * printed after all. */
+static void keep_warning(void *user, gno_log_level level, const char *text)
+{
+    summary *found = user;
+    if (level != GNO_LOG_WARNING || found->scene != NULL) {
+        return; /* what preparing remarks is in the counts of problems */
+    }
+    if (found->warning_count == found->warning_room) {
+        const size_t room = found->warning_room * 2 + 16;
+        char **grown = realloc(found->warnings, room * sizeof *grown);
+        if (grown == NULL) {
+            say("warning: %s", text);
+            return;
+        }
+        found->warnings = grown;
+        found->warning_room = room;
+    }
+    const size_t size = strlen(text) + 1;
+    char *copy = malloc(size);
+    if (copy == NULL) {
+        say("warning: %s", text);
+        return;
+    }
+    memcpy(copy, text, size);
+    found->warnings[found->warning_count++] = copy;
+}
+
 static int run_job(const job *work)
 {
     progress shown = progress_make(work->quiet);
-    const gno_context_def def = progress_context_def(&shown);
+    gno_context_def def = progress_context_def(&shown);
     gno_context *context = NULL;
     gno_scene *scene = NULL;
     summary found;
     memset(&found, 0, sizeof found);
+    def.log = keep_warning;
+    def.log_user = &found;
     if (gno_context_create(&def, &context) != GNO_OK) {
         say("out of memory");
         return EXIT_FAILED;
     }
     gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, &scene);
     if (status == GNO_OK) {
+        found.scene = scene;
         status = gather(work, scene, &found);
     }
     progress_clear(&shown);
@@ -132,6 +162,10 @@ static int run_job(const job *work)
     } else {
         say("%s", gno_context_message(context));
     }
+    for (size_t i = 0; i < found.warning_count; i++) {
+        free(found.warnings[i]);
+    }
+    free(found.warnings);
     free(found.material_polygons);
     gno_scene_destroy(scene);
     gno_context_destroy(context);

@@ -13,6 +13,8 @@ typedef struct summary {
     double lower[3], upper[3];
     size_t holes;
     size_t *material_polygons; /* how many polygons have each material */
+    char **warnings;           /* what the reader remarked, in order */
+    size_t warning_count, warning_room;
 } summary;
 
 /* To standard output. */

@@ -118,5 +118,11 @@ void info_json(const summary *found)
             print_material(&material, found->material_polygons[i]);
         }
     }
-    printf("],\n  \"problems\": {\"degenerate\": %zu, \"non_planar\": %zu}\n}\n", found->problems.degenerate, found->problems.non_planar);
+    printf("],\n  \"problems\": {\"degenerate\": %zu, \"non_planar\": %zu, \"warnings\": [", found->problems.degenerate,
+           found->problems.non_planar);
+    for (size_t i = 0; i < found->warning_count; i++) {
+        printf("%s", i > 0 ? ",\n    " : "\n    ");
+        json_string(stdout, found->warnings[i]);
+    }
+    printf("]}\n}\n");
 }

@@ -2,7 +2,6 @@
 #include "cli/info.h"
 
 #include <stdio.h>
-#include <string.h>
 
 /* One name for values outside the list keeps the printers free of checks. */
 static const char *pick(const char *const *names, int count, int index)
@@ -46,6 +45,11 @@ static void colour(const char *name, const double value[3])
     } else {
         printf("%s %g %g %g", name, value[0], value[1], value[2]);
     }
+}
+
+static const char *plural(size_t count)
+{
+    return count == 1 ? "" : "s";
 }
 
 /* Names come from files and must not reach the terminal as commands. */
@@ -119,7 +123,7 @@ static void print_materials(const summary *found)
         if (gno_scene_material(found->scene, (int)i, &material) != GNO_OK) {
             continue;
         }
-        printf("  %-4zu %zu polygons: %s", i, found->material_polygons[i], shading_name(material.shading));
+        printf("  %-4zu %zu polygon%s: %s", i, found->material_polygons[i], plural(found->material_polygons[i]), shading_name(material.shading));
         colour(", ambient", material.ambient);
         colour(", diffuse", material.diffuse);
         colour(", specular", material.specular);
@@ -131,12 +135,34 @@ static void print_materials(const summary *found)
     }
 }
 
+static void print_problems(const summary *found)
+{
+    const gno_scene_problems *p = &found->problems;
+    if (p->degenerate == 0 && p->non_planar == 0 && found->warning_count == 0) {
+        printf("problems   none\n");
+        return;
+    }
+    printf("problems\n");
+    for (size_t i = 0; i < found->warning_count; i++) {
+        printf("  ");
+        name_text(found->warnings[i]);
+        putchar('\n');
+    }
+    if (p->degenerate > 0) {
+        printf("  %zu polygon%s without area, skipped\n", p->degenerate, plural(p->degenerate));
+    }
+    if (p->non_planar > 0) {
+        printf("  %zu polygon%s not planar, split into triangles\n", p->non_planar, plural(p->non_planar));
+    }
+}
+
 void info_text(const summary *found)
 {
     const gno_scene_counts *c = &found->counts;
     printf("scene      ");
     name_text(found->path);
-    printf("\ncontents   %zu objects, %zu polygons with %zu holes, %zu corners\n", c->objects, c->polygons, found->holes, c->corners);
+    printf("\ncontents   %zu object%s, %zu polygon%s with %zu hole%s, %zu corners\n", c->objects, plural(c->objects), c->polygons,
+           plural(c->polygons), found->holes, plural(found->holes), c->corners);
     printf("           %zu vertices, %zu normals, %zu texture coordinates\n", c->vertices, c->normals, c->texcoords);
     if (found->has_bounds) {
         point("bounds    ", found->lower);
@@ -148,15 +174,5 @@ void info_text(const summary *found)
     print_view(found);
     print_lights(found);
     print_materials(found);
-    if (found->problems.degenerate == 0 && found->problems.non_planar == 0) {
-        printf("problems   none\n");
-        return;
-    }
-    printf("problems\n");
-    if (found->problems.degenerate > 0) {
-        printf("  %zu polygons without area: skipped\n", found->problems.degenerate);
-    }
-    if (found->problems.non_planar > 0) {
-        printf("  %zu polygons that are not planar: split into triangles\n", found->problems.non_planar);
-    }
+    print_problems(found);
 }

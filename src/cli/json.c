@@ -50,6 +50,11 @@ void json_number(FILE *out, double value)
     fputs(text, out);
 }
 
+void json_seconds(FILE *out, double value)
+{
+    fprintf(out, "%.6f", value);
+}
+
 void json_vector(FILE *out, const double value[3])
 {
     for (int i = 0; i < 3; i++) {

@@ -9,6 +9,7 @@ void json_string(FILE *out, const char *text);
 
 /* As few digits as give the same double back. */
 void json_number(FILE *out, double value);
+void json_seconds(FILE *out, double value); /* to the microsecond */
 void json_vector(FILE *out, const double value[3]);
 
 #endif

@@ -100,14 +100,14 @@ int main(int argc, char **argv)
         name = argv[2];
         argv[2] = help_option;
     }
-    const char *names[COMMANDS];
+    const char *names[COMMANDS + 2] = {[COMMANDS] = "--help", "--version"};
     for (int i = 0; i < COMMANDS; i++) {
         names[i] = commands[i]->name;
         if (strcmp(name, names[i]) == 0) {
             return commands[i]->run(argc - 2, argv + 2);
         }
     }
-    const char *near = nearest_name(name, names, COMMANDS);
+    const char *near = nearest_name(name, names, COMMANDS + 2);
     const char *kind = name[0] == '-' ? "option" : "command";
     return near != NULL ? usage(NULL, "unknown %s \"%s\"; did you mean \"%s\"?", kind, name, near)
                         : usage(NULL, "unknown %s \"%s\"", kind, name);

@@ -34,6 +34,12 @@ static const kind *kind_of(const char *path)
     return NULL;
 }
 
+int output_is_stream(const char *path)
+{
+    struct stat found;
+    return strcmp(path, "-") == 0 || (stat(path, &found) == 0 && !S_ISREG(found.st_mode));
+}
+
 static int check_place(const char *path)
 {
     struct stat found;

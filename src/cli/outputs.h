@@ -18,4 +18,7 @@ typedef struct outputs {
 /* Checks names and depth (0: none wished); returns an exit status, its message being out. */
 int outputs_check(outputs *files, int depth, const char *command_name);
 
+/* Standard output, a pipe or a device: takes the bytes as they come and leaves nothing half done in a folder. */
+int output_is_stream(const char *path);
+
 #endif

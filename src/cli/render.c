@@ -227,18 +227,18 @@ static gno_status load(const job *work, gno_context *context, gno_scene **scene)
     return status;
 }
 
-/* Standard output leaves nothing behind, and a reader that does not read could hold it up for ever: there a signal ends the
+/* A stream leaves nothing behind, and a reader that does not read could hold it up for ever: there a signal ends the
  * program at once. A file is finished, which takes little time, and the program ends after it. */
 static gno_status write_pictures(const job *work, gno_context *context, const gno_image_def *image, const float *rgb)
 {
     gno_picture_def def = gno_picture_def_default();
     def.exposure = work->exposure;
     for (int i = 0; i < work->files.count; i++) {
-        const int standard = strcmp(work->files.paths[i], "-") == 0;
+        const int stream = output_is_stream(work->files.paths[i]);
         if (interrupt_signal() != 0) {
             return gno_context_fail(context, GNO_ERROR_CANCELLED, "interrupted");
         }
-        if (standard) {
+        if (stream) {
             interrupt_release();
         }
         def.depth = work->files.depths[i];
@@ -246,7 +246,7 @@ static gno_status write_pictures(const job *work, gno_context *context, const gn
         if (status != GNO_OK) {
             return status;
         }
-        if (standard) {
+        if (stream) {
             interrupt_catch();
         }
     }

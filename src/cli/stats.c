@@ -15,12 +15,12 @@ typedef struct entry {
     double value;
 } entry;
 
-static void print_group(FILE *out, const char *name, const entry *entries, size_t count)
+static void print_group(FILE *out, const char *name, const entry *entries, size_t count, void (*print_value)(FILE *, double))
 {
     fprintf(out, "  \"%s\": {", name);
     for (size_t i = 0; i < count; i++) {
         fprintf(out, "%s\"%s\": ", i > 0 ? ", " : "", entries[i].name);
-        json_number(out, entries[i].value);
+        print_value(out, entries[i].value);
     }
     fprintf(out, "},\n");
 }
@@ -43,8 +43,8 @@ static void print(FILE *out, const run_stats *stats)
     fprintf(out, "{\n  \"scene\": ");
     json_string(out, stats->scene);
     fprintf(out, ",\n  \"width\": %d, \"height\": %d, \"threads\": %d,\n", stats->width, stats->height, stats->threads);
-    print_group(out, "seconds", seconds, sizeof seconds / sizeof seconds[0]);
-    print_group(out, "counts", counts, sizeof counts / sizeof counts[0]);
+    print_group(out, "seconds", seconds, sizeof seconds / sizeof seconds[0], json_seconds);
+    print_group(out, "counts", counts, sizeof counts / sizeof counts[0], json_number);
     fprintf(out, "  \"peak_memory\": %zu\n}\n", stats->peak_memory);
 }
 
