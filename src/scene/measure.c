@@ -94,7 +94,8 @@ static int triangle_has_area(double length, double side0, double side1, double s
     return length > bound * perimeter * perimeter;
 }
 
-int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
+/* Apart from the function that other files call, so that the loop over a scene's triangles takes it in line. */
+static inline int measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
 {
     vec3 a = v3_from(positions[vertex[0]]), b = v3_from(positions[vertex[1]]), c = v3_from(positions[vertex[2]]);
     vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), bc = v3_sub(c, b);
@@ -105,6 +106,11 @@ int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3]
     }
     set_plane(poly, normal, length, v3_scale(v3_add(a, v3_add(b, c)), 1.0 / 3));
     return 1;
+}
+
+int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
+{
+    return measure_triangle(positions, vertex, poly);
 }
 
 static int measure_ring(const double (*positions)[3], const int *vertex, unsigned count, gnoi_poly *poly)
@@ -209,7 +215,7 @@ static gnoi_kind measure_polygon(const gno_scene *scene, size_t p, gnoi_poly *po
     }
     poly->ring_count = 1;
     poly->corner_count = 3;
-    if (!gnoi_measure_triangle(positions, v, poly)) {
+    if (!measure_triangle(positions, v, poly)) {
         return GNOI_EMPTY;
     }
     for (i = 0; i < 3; i++) {

@@ -5,25 +5,16 @@
  * by object, the weighted sum of the planes of the smooth polygons around their point, those beyond the crease angle from
  * the corner's own polygon left out; points are told apart by position, for files repeat vertices along seams.
  * Where neither gives a direction the corner takes its own plane's normal.
- * Invariants: prepared.normals are unit vectors; sums run in the order of corners, so the result is always the same bits;
- * until a corner is settled, corner_normal holds GNOI_NONE.
- * Source: Gouraud 1971 for averages; textbook equations 8.1.9 and 8.1.10 for weights by area; Thürmer and Wüthrich 1998
+ * Invariants: every normal that a corner names is a unit vector; sums run in the order of corners, so the result is always
+ * the same bits; until a corner is settled, corner_normal holds GNOI_NONE.
+ * Source: Gouraud 1971 for averages; textbook equations 8.1.9 and 8.1.10 for weights by area; Thuermer and Wuethrich 1998
  * for weights by angle.
  */
 #include "scene/prepare.h"
 #include "base/tolerance.h"
+#include "scene/weld.h"
 
 #include <string.h>
-
-/* Points of one object, told apart by position: classes 0 .. count-1. */
-typedef struct weld {
-    uint32_t low;        /* first vertex of the object's range */
-    size_t span;         /* vertices in the range */
-    uint32_t *class_of;  /* per vertex of the range; GNOI_NONE: not used by a smooth polygon */
-    size_t table_size;   /* a power of two */
-    uint32_t *table;     /* vertices by hash of position; GNOI_NONE: free */
-    uint32_t count;
-} weld;
 
 /* A corner at a point: what its polygon adds to the sum there. */
 typedef struct entry {
@@ -36,7 +27,7 @@ typedef struct smoothing {
     gnoi_prepared *out;
     const gnoi_object *object;
     size_t first, last; /* the object's polygons among the prepared ones */
-    weld points;
+    gnoi_weld points;
     uint32_t plane_of;   /* polygon whose plane's normal was stored last */
     uint32_t plane_normal;
 } smoothing;
@@ -46,12 +37,25 @@ typedef struct sum {
     double weight;
 } sum;
 
-static double add_zero(double x)
-{
-    return x + 0.0; /* the negative zero becomes the positive one */
-}
-
 /* ---- storing normals --------------------------------------------------------------------------------------------- */
+
+/* Room for `more` normals that are sure to come, without the excess of doubling; several objects may each add some. */
+static int make_room(smoothing *s, size_t more)
+{
+    gnoi_prepared *out = s->out;
+    size_t need = out->normal_count + more;
+    float(*grown)[3];
+    if (need <= out->normal_capacity || need < out->normal_capacity + out->normal_capacity / 2) {
+        return 1; /* store doubles */
+    }
+    grown = gnoi_realloc(s->scene->context, out->normals, out->normal_capacity, need, sizeof *grown);
+    if (!grown) {
+        return 0;
+    }
+    out->normals = grown;
+    out->normal_capacity = need;
+    return 1;
+}
 
 static int store(smoothing *s, vec3 unit, uint32_t *index)
 {
@@ -159,95 +163,12 @@ static int settle_file_normals(smoothing *s, size_t first, size_t last)
     return open;
 }
 
-/* ---- points ------------------------------------------------------------------------------------------------------ */
-
-static uint64_t hash_position(const double p[3])
-{
-    uint64_t hash = 0x9e3779b97f4a7c15u, bits;
-    int i;
-    for (i = 0; i < 3; i++) {
-        double x = add_zero(p[i]);
-        memcpy(&bits, &x, sizeof bits);
-        hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
-        hash ^= hash >> 32;
-    }
-    return hash;
-}
-
-static uint32_t find_class(weld *w, const double (*positions)[3], uint32_t vertex)
-{
-    const double *p = positions[vertex];
-    size_t slot = (size_t)hash_position(p) & (w->table_size - 1);
-    while (w->table[slot] != GNOI_NONE) {
-        const double *q = positions[w->table[slot]];
-        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
-            return w->class_of[w->table[slot] - w->low];
-        }
-        slot = (slot + 1) & (w->table_size - 1);
-    }
-    w->table[slot] = vertex;
-    return w->count++;
-}
-
-static void set_range(smoothing *s)
-{
-    uint32_t low = GNOI_NONE, high = 0;
-    size_t i, k;
-    for (i = s->first; i < s->last; i++) {
-        const gnoi_poly *poly = &s->out->polys[i];
-        for (k = 0; gnoi_is_smooth(poly) && k < poly->corner_count; k++) {
-            uint32_t v = s->out->corner_vertex[poly->corner + k];
-            low = v < low ? v : low;
-            high = v > high ? v : high;
-        }
-    }
-    s->points.low = low;
-    s->points.span = (size_t)(high - low) + 1;
-}
-
-/* Called only for ranges with smooth polygons. */
-static int make_weld(smoothing *s)
-{
-    const double(*positions)[3] = (const double(*)[3])s->scene->positions;
-    weld *w = &s->points;
-    size_t i, k;
-    set_range(s);
-    w->count = 0;
-    w->table_size = 16;
-    while (w->table_size < 2 * w->span) {
-        w->table_size *= 2;
-    }
-    w->class_of = gnoi_malloc(s->scene->context, w->span, sizeof *w->class_of);
-    w->table = gnoi_malloc(s->scene->context, w->table_size, sizeof *w->table);
-    if (!w->class_of || !w->table) {
-        return 0;
-    }
-    memset(w->class_of, 0xff, w->span * sizeof *w->class_of);
-    memset(w->table, 0xff, w->table_size * sizeof *w->table);
-    for (i = s->first; i < s->last; i++) {
-        const gnoi_poly *poly = &s->out->polys[i];
-        for (k = 0; gnoi_is_smooth(poly) && k < poly->corner_count; k++) {
-            uint32_t v = s->out->corner_vertex[poly->corner + k];
-            if (w->class_of[v - w->low] == GNOI_NONE) {
-                w->class_of[v - w->low] = find_class(w, positions, v);
-            }
-        }
-    }
-    return 1;
-}
-
-static void free_weld(smoothing *s)
-{
-    gnoi_free(s->scene->context, s->points.class_of, s->points.span, sizeof *s->points.class_of);
-    gnoi_free(s->scene->context, s->points.table, s->points.table_size, sizeof *s->points.table);
-}
+/* ---- weights and sums --------------------------------------------------------------------------------------------- */
 
 static uint32_t class_at(const smoothing *s, size_t corner)
 {
-    return s->points.class_of[s->out->corner_vertex[corner] - s->points.low];
+    return gnoi_weld_class(&s->points, s->out->corner_vertex[corner]);
 }
-
-/* ---- weights ----------------------------------------------------------------------------------------------------- */
 
 static vec3 position_at(const smoothing *s, size_t corner)
 {
@@ -357,6 +278,9 @@ static int settle_points(smoothing *s, const sum *sums)
     gnoi_prepared *out = s->out;
     uint32_t base = (uint32_t)out->normal_count, class, unused;
     size_t i, k;
+    if (!make_room(s, s->points.count)) {
+        return 0;
+    }
     for (class = 0; class < s->points.count; class++) {
         if (!store(s, v3_unit(sums[class].n), &unused)) {
             return 0;
@@ -541,11 +465,11 @@ static int average_sides(smoothing *s)
 
 static int average_object(smoothing *s)
 {
-    int good = make_weld(s);
+    int good = gnoi_weld_make(s->scene, s->first, s->last, &s->points);
     if (good) {
         good = s->object->crease >= 180 ? average_all(s) : average_sides(s);
     }
-    free_weld(s);
+    gnoi_weld_free(s->scene->context, &s->points);
     return good;
 }
 
