@@ -47,7 +47,8 @@ gno_status gnoi_read_camera(const gnoi_yaml *yaml, const gnoi_yaml_node *node, g
     if (status != GNO_OK) return status;
     for (int i = 0; i < 3; i++) view[i] = camera->target[i] - camera->eye[i];
     if (!(largest(view) > SAME_POINT * fmax(largest(camera->eye), largest(camera->target)))) {
-        const gnoi_yaml_node *at = seen[TARGET] ? seen[TARGET] : seen[EYE] ? seen[EYE] : node;
+        const gnoi_yaml_node *at = seen[EYE] && seen[EYE]->set ? seen[EYE] : seen[TARGET] ? seen[TARGET] : seen[EYE];
+        if (!at) at = node;
         return gnoi_yaml_fail(yaml, at, GNO_ERROR_INPUT, "eye and target are the same point");
     }
     if (are_parallel(view, camera->up)) {

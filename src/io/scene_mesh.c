@@ -5,8 +5,9 @@
  *  - up: the format's convention (STL z, the others y), but z for a mesh that is flat along z: its extent in z is its smallest and less
  *    than half of the other two, as in plans of cities and grounds. The setting `up` overrides.
  *  - view: from the front, 35 degrees to the right and 30 above, 30 degrees of field; the eye stands exactly so far away that
- *    the bounding box fills the frame but for a margin. A camera in the file comes first.
- *  - light: a sun from behind the viewer's left shoulder, ambient light; a file's own lights come first.
+ *    the mesh fills the frame but for a margin. A camera in the file comes first.
+ *  - light: a sun from behind the viewer's left shoulder; a weak light at the eye, whose shadows nobody sees, because many
+ *    files have materials without ambient reflection, black in every shadow; ambient light. A file's own lights come first.
  *  - ground: a light grey square under the lowest point, unless the file has both camera and lights.
  *  - shading: phong where the file has normals and for triangle meshes too large to be meant as facets, otherwise flat.
  */
@@ -19,14 +20,15 @@
 #define AZIMUTH 35.0
 #define ELEVATION 30.0
 #define FIELD 30.0
-#define MARGIN 0.08    /* of half the frame, on each side */
+#define MARGIN 0.1     /* of half the frame, on each side */
 #define GROUND 10.0    /* half the ground's side, in radii: reaches past the frame's upper corners */
 #define GROUND_GAP 1e-4 /* of the largest extent: over the engine's tolerance for coplanar, under what is seen */
 #define FACETS 2000    /* triangle meshes up to this size are shown as they are */
 #define CREASE 40.0
 
-static const double default_ambient[3] = {0.3, 0.3, 0.3};
-static const double sun_intensity[3] = {0.78, 0.75, 0.7};
+static const double default_ambient[3] = {0.17, 0.18, 0.2};
+static const double sun_intensity[3] = {0.72, 0.69, 0.63};
+static const double fill_intensity[3] = {0.2, 0.21, 0.23};
 static const double sky[3] = {0.55, 0.68, 0.85};
 static const double ground_grey = 0.62;
 
@@ -51,7 +53,7 @@ static const gnoi_field fields[FIELDS] = {
     [UP] = {.key = "up", .kind = GNOI_FIELD_CHOICE, .offset = offsetof(mesh_view, up), .choices = axes},
 };
 
-/* The view's frame: unit vectors of the scene and the box that has to fit. */
+/* What the view is built from: unit vectors of the scene, and where the mesh lies. */
 typedef struct frame {
     double up[3], right[3], front[3]; /* the scene's: up, and front towards a viewer who stands before it */
     double lower[3], upper[3], centre[3];
@@ -136,52 +138,72 @@ static double dot(const double a[3], const double b[3]) { return a[0] * b[0] + a
 /* ---- the view ----------------------------------------------------------------------------------------------------------- */
 
 /* An eye at `along` its axis and `across` beside it sees a point (p across, q towards the eye) within the tangent t when
- * |p - across| <= t (along - q). Over all points: across + t along >= most, t along - across >= least. Both are met at: */
-static void fit(const double p[8], const double q[8], double t, double *along, double *across)
+ * |p - across| <= t (along - q), that is, across + t along >= p + t q and t along - across >= -p + t q. `most` and `least`
+ * are the largest right sides over all points; both are met at along = (most + least) / 2t, across = (most - least) / 2. */
+typedef struct reach {
+    double t, most, least;
+} reach;
+
+static void reach_out(reach *r, double p, double q)
 {
-    double most = -HUGE_VAL, least = -HUGE_VAL;
-    for (int i = 0; i < 8; i++) {
-        most = fmax(most, p[i] + t * q[i]);
-        least = fmax(least, -p[i] + t * q[i]);
-    }
-    *along = (most + least) / (2 * t);
-    *across = (most - least) / 2;
+    r->most = fmax(r->most, p + r->t * q);
+    r->least = fmax(r->least, -p + r->t * q);
 }
 
-static void place_camera(const frame *f, const gno_image_def *image, gno_camera *camera)
+static reach reach_start(double t)
+{
+    reach r = {t, -HUGE_VAL, -HUGE_VAL};
+    return r;
+}
+
+/* All corners of all polygons, seen along the frame's axes. */
+static void reach_mesh(const gno_scene *scene, const frame *f, const double view[3], const double side[3], const double top[3],
+                       reach *wide, reach *high)
+{
+    size_t count = gno_scene_count(scene).polygons;
+    gno_polygon p;
+    for (size_t i = 0; i < count && gno_scene_polygon(scene, i, &p) == GNO_OK; i++) {
+        for (unsigned c = p.ring_start[0]; c < p.ring_start[p.ring_count]; c++) {
+            const double *at = p.positions + 3 * (size_t)p.corner_vertex[c];
+            double corner[3] = {at[0] - f->centre[0], at[1] - f->centre[1], at[2] - f->centre[2]};
+            double q = dot(corner, view);
+            reach_out(wide, dot(corner, side), q);
+            reach_out(high, dot(corner, top), q);
+        }
+    }
+}
+
+static void place_camera(const gno_scene *scene, const frame *f, const gno_image_def *image, gno_camera *camera)
 {
     const double radians = 3.14159265358979323846 / 180;
     double a = AZIMUTH * radians, e = ELEVATION * radians, t = tan(FIELD * radians / 2) * (1 - MARGIN);
-    double view[3], side[3], top[3], x[8], y[8], q[8];
-    combine(view, sin(a) * cos(e), f->right, sin(e), f->up, cos(a) * cos(e), f->front); /* from the box to the eye */
+    double view[3], side[3], top[3];
+    combine(view, sin(a) * cos(e), f->right, sin(e), f->up, cos(a) * cos(e), f->front); /* from the mesh to the eye */
     combine(side, cos(a), f->right, 0, f->up, -sin(a), f->front);
     combine(top, -sin(a) * sin(e), f->right, cos(e), f->up, -cos(a) * sin(e), f->front);
-    for (int i = 0; i < 8; i++) {
-        double corner[3];
-        for (int k = 0; k < 3; k++) corner[k] = (i >> k & 1 ? f->upper[k] : f->lower[k]) - f->centre[k];
-        x[i] = dot(corner, side);
-        y[i] = dot(corner, top);
-        q[i] = dot(corner, view);
-    }
-    double wide, high, across, above;
-    fit(x, q, t * image->width / image->height, &wide, &across);
-    fit(y, q, t, &high, &above);
-    double far = fmax(fmax(wide, high), 1e-3 * f->size);
+    reach wide = reach_start(t * image->width / image->height), high = reach_start(t);
+    reach_mesh(scene, f, view, side, top, &wide, &high);
+    double across = (wide.most - wide.least) / 2, above = (high.most - high.least) / 2;
+    double along = fmax(fmax((wide.most + wide.least) / (2 * wide.t), (high.most + high.least) / (2 * t)), 1e-3 * f->size);
     *camera = gno_camera_default();
     camera->fov = FIELD;
     camera->height = 2 * f->radius;
     for (int i = 0; i < 3; i++) {
         camera->target[i] = f->centre[i] + across * side[i] + above * top[i];
-        camera->eye[i] = camera->target[i] + far * view[i];
+        camera->eye[i] = camera->target[i] + along * view[i];
         camera->up[i] = f->up[i];
     }
 }
 
-static gno_status add_sun(gno_scene *scene, const frame *f, const gno_camera *camera)
+static gno_status add_lights(gno_scene *scene, const frame *f, const gno_camera *camera)
 {
-    gno_light sun = gno_light_default();
+    gno_light sun = gno_light_default(), fill = gno_light_default();
     double view[3], side[3], level = 0;
     for (int i = 0; i < 3; i++) view[i] = camera->target[i] - camera->eye[i];
+    fill.type = camera->type == GNO_CAMERA_ORTHOGRAPHIC ? GNO_LIGHT_DIRECTIONAL : GNO_LIGHT_POINT;
+    memcpy(fill.position, camera->eye, sizeof fill.position);
+    memcpy(fill.direction, view, sizeof fill.direction);
+    memcpy(fill.intensity, fill_intensity, sizeof fill.intensity);
     double rise = dot(view, f->up);
     for (int i = 0; i < 3; i++) view[i] -= rise * f->up[i];
     level = sqrt(dot(view, view));
@@ -190,7 +212,8 @@ static gno_status add_sun(gno_scene *scene, const frame *f, const gno_camera *ca
     sun.type = GNO_LIGHT_DIRECTIONAL;
     combine(sun.direction, 0.45, view, 0.75, side, -0.95, f->up);
     memcpy(sun.intensity, sun_intensity, sizeof sun.intensity);
-    return gno_scene_add_light(scene, "sun", &sun, NULL);
+    gno_status status = gno_scene_add_light(scene, "sun", &sun, NULL);
+    return status == GNO_OK ? gno_scene_add_light(scene, "eye", &fill, NULL) : status;
 }
 
 static gno_status add_ground(gno_scene *scene, const frame *f)
@@ -234,7 +257,7 @@ static gno_status set_view(gno_scene *scene, const gnoi_yaml *yaml, const gnoi_y
     if (status == GNO_OK && seen[AMBIENT]) status = gnoi_read_ambient(yaml, seen[AMBIENT], ambient);
     if (status != GNO_OK) return status;
     gno_camera camera = gno_scene_camera(scene);
-    if (!has_camera) place_camera(f, &image, &camera);
+    if (!has_camera) place_camera(scene, f, &image, &camera);
     if (seen[CAMERA]) status = gnoi_read_camera(yaml, seen[CAMERA], &camera);
     if (status == GNO_OK) status = gno_scene_set_camera(scene, &camera);
     if (status == GNO_OK) status = gno_scene_set_image(scene, &image);
@@ -259,7 +282,7 @@ static gno_status dress(gno_scene *scene, const gnoi_yaml *yaml, const gnoi_yaml
         status = gnoi_read_lights(&reader, seen[LIGHTS]);
         if (status == GNO_OK) gnoi_warn_undrawn(&reader);
     } else if (status == GNO_OK && result->light_count == 0) {
-        status = add_sun(scene, &f, &camera);
+        status = add_lights(scene, &f, &camera);
     }
     if (status == GNO_OK && !(result->has_camera && result->light_count > 0)) status = add_ground(scene, &f);
     return status;
