@@ -21,6 +21,7 @@ INCLUDEDIR ?= $(PREFIX)/include
 PKGCONFIG ?= pkg-config
 BUILD   ?= build
 OUT     ?= out
+V       ?=# anything: whole commands instead of short lines
 
 # ---- flags the project needs ----------------------------------------------------------------------------------------
 # The same input has to give the same bytes with every compiler: no contraction to fused multiply-adds, no -ffast-math,
@@ -29,8 +30,9 @@ SANITIZE :=
 LANGUAGE := -std=c11 -ffp-contract=off -pthread -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -Iinclude -Isrc
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion
 TEST_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow
-COMPILE = $(CC) $(CPPFLAGS) $(CFLAGS) $(LANGUAGE) $(SANITIZE) -fvisibility=hidden -fPIC -MMD -MP
+COMPILE = $(CC) $(CPPFLAGS) $(CFLAGS) $(LANGUAGE) $(SANITIZE) -fno-math-errno -fno-trapping-math -fvisibility=hidden -fPIC -MMD -MP
 LINK = $(CC) $(CFLAGS) $(SANITIZE) -pthread $(LDFLAGS)
+soname = -Wl,-soname,$(1).so.$(SOMAJOR)
 
 # OpenEXRCore is the C part of OpenEXR; its pkg-config module would link all the C++ libraries too, so only the include
 # path is taken from there.
@@ -74,6 +76,12 @@ all: $(STATIC) $(SHARED) $(TOOL) $(BUILD)/gnomon.pc $(BUILD)/gnomon-io.pc
 JOBS = $(if $(filter -j%,$(MAKEFLAGS)),,-j$(shell nproc 2>/dev/null || echo 1))
 SUBMAKE = $(MAKE) --no-print-directory
 
+ifeq ($(strip $(V)),)
+run = @printf '  %-5s %s\n' '$(1)' '$@' && $(2)
+else
+run = $(2)
+endif
+
 # ---- building --------------------------------------------------------------------------------------------------------
 # Everything compiled depends on this file, which changes only when compiler or flags do.
 $(BUILD)/flags: FORCE
@@ -91,34 +99,34 @@ $(BUILD)/engine.list $(BUILD)/io.list: FORCE
 $(BUILD)/obj/src/io/%.o: EXTRA = $(IO_CFLAGS)
 $(BUILD)/obj/src/%.o: src/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(COMPILE) $(WARNINGS) $(EXTRA) -c $< -o $@
+	$(call run,CC,$(COMPILE) $(WARNINGS) $(EXTRA) -c $< -o $@)
 
 $(BUILD)/obj/tests/%.o: tests/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(COMPILE) $(TEST_WARNINGS) $(IO_CFLAGS) -Itests -c $< -o $@
+	$(call run,CC,$(COMPILE) $(TEST_WARNINGS) $(IO_CFLAGS) -Itests -c $< -o $@)
 
 $(BUILD)/libgnomon.a: $(ENGINE_OBJ) $(BUILD)/engine.list
-	rm -f $@ && $(AR) rcs $@ $(ENGINE_OBJ)
+	$(call run,AR,rm -f $@ && $(AR) rcs $@ $(ENGINE_OBJ))
 
 $(BUILD)/libgnomon-io.a: $(IO_OBJ) $(BUILD)/io.list
-	rm -f $@ && $(AR) rcs $@ $(IO_OBJ)
+	$(call run,AR,rm -f $@ && $(AR) rcs $@ $(IO_OBJ))
 
 $(BUILD)/libgnomon.so.$(VERSION): $(ENGINE_OBJ) $(BUILD)/engine.list
-	$(LINK) -shared -Wl,-soname,libgnomon.so.$(SOMAJOR) $(ENGINE_OBJ) -o $@ -lm
+	$(call run,LINK,$(LINK) -shared $(call soname,libgnomon) $(ENGINE_OBJ) -o $@ -lm)
 
 $(BUILD)/libgnomon-io.so.$(VERSION): $(IO_OBJ) $(BUILD)/io.list $(BUILD)/libgnomon.so
-	$(LINK) -shared -Wl,-soname,libgnomon-io.so.$(SOMAJOR) $(IO_OBJ) -o $@ -L$(BUILD) -lgnomon $(IO_LIBS) -lm
+	$(call run,LINK,$(LINK) -shared $(call soname,libgnomon-io) $(IO_OBJ) -o $@ -L$(BUILD) -lgnomon $(IO_LIBS) -lm)
 
 $(SHARED): %.so: %.so.$(VERSION)
-	ln -sf $(<F) $*.so.$(SOMAJOR)
-	ln -sf $(*F).so.$(SOMAJOR) $@
+	@ln -sf $(<F) $*.so.$(SOMAJOR)
+	@ln -sf $(*F).so.$(SOMAJOR) $@
 
 $(BUILD)/gnomon: $(CLI_OBJ) $(STATIC)
-	$(LINK) $(CLI_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm
+	$(call run,LINK,$(LINK) $(CLI_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
 
 $(TEST_BIN): $(BUILD)/%: $(BUILD)/obj/%.o $(SUPPORT_OBJ) $(STATIC)
 	@mkdir -p $(@D)
-	$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(TEST_LIBS) $(IO_LIBS) -lm
+	$(call run,LINK,$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(TEST_LIBS) $(IO_LIBS) -lm)
 
 $(BUILD)/gnomon.pc: FORCE
 	@mkdir -p $(@D)
