@@ -7,6 +7,10 @@
  * further than coordinates reach. */
 #define LIGHT_GAP 1e-9
 
+/* A candidate that reaches over an edge of the region by less than this share of the edge's length is ruled out: rounding of
+ * corners that neighbours share comes to some 1e-7 of it. */
+#define PROBE_SLACK 1e-6
+
 /* Everything about one (receiver, lamp) pair that its casters' tests share. */
 typedef struct pair {
     const gno_scene *scene;
@@ -98,7 +102,7 @@ static int region_corners(const gnoi_view *view, const gnoi_receiver *r, vec3 co
 static float min_f(float a, float b) { return a < b ? a : b; }
 static float max_f(float a, float b) { return a > b ? a : b; }
 
-/* Both boxes hold the receiver's region on a one-face frame, so their common part does. */
+/* Both boxes hold the receiver's region, so their common part does. */
 static void box_intersect(gnoi_lbox *a, const gnoi_lbox *b)
 {
     a->u0 = max_f(a->u0, b->u0);
@@ -108,26 +112,82 @@ static void box_intersect(gnoi_lbox *a, const gnoi_lbox *b)
     a->z1 = min_f(a->z1, b->z1);
 }
 
-static int region_boxes(const gno_scene *scene, const gnoi_view *view, const gnoi_frame *frame, const gnoi_receiver *r,
-                        gnoi_lbox boxes[6])
+/* The convex region's edges on the light's plane. */
+static void set_probe_edges(gnoi_probe *probe, const gnoi_lpoint *p, int count)
 {
-    vec3 hull[GNOI_FRAME_POINTS], corners[4];
-    int hull_count = gnoi_poly_hull(scene, r->poly, hull), n;
-    if (r->whole || !region_corners(view, r, corners))
-        return gnoi_frame_boxes(frame, hull, hull_count, boxes);
-    if (frame->faces == 6)
-        return gnoi_frame_boxes(frame, corners, 4, boxes);
-    n = gnoi_frame_boxes(frame, hull, hull_count, boxes);
-    for (int i = 0; i < 4 && !frame->parallel; i++) {
-        double u, v, z;
-        gnoi_frame_map(frame, corners[i], &u, &v, &z);
-        if (!(z > 0))
-            return n;
+    double area = 0;
+    for (int i = 1; i + 1 < count; i++)
+        area += (p[i].u - p[0].u) * (p[i + 1].v - p[0].v) - (p[i].v - p[0].v) * (p[i + 1].u - p[0].u);
+    for (int i = 0; i < count; i++) {
+        const gnoi_lpoint *a = &p[i], *b = &p[i + 1 < count ? i + 1 : 0];
+        double s = area < 0 ? -1 : 1, du = (b->u - a->u) * s, dv = (b->v - a->v) * s;
+        probe->a[i] = -dv;
+        probe->b[i] = du;
+        probe->c[i] = dv * a->u - du * a->v;
+        probe->slack[i] = PROBE_SLACK * (du * du + dv * dv);
     }
-    gnoi_lbox part[6];
-    gnoi_frame_boxes(frame, corners, 4, part);
-    box_intersect(&boxes[0], &part[0]);
-    return n;
+    probe->edge_count = count;
+}
+
+/* The receiver's plane as nearness to the light over (u,v): from three of the points, when they span it. */
+static int set_probe_plane(gnoi_probe *probe, const pair *p, const gnoi_lpoint *l, int count)
+{
+    double lift = 0.5 * p->tolerance / p->lamp_height, best = 0;
+    int k = 1;
+    const gnoi_lpoint *a = &l[0], *b, *c;
+    for (int i = 1; i + 1 < count; i++) {
+        double area = fabs((l[i].u - a->u) * (l[i + 1].v - a->v) - (l[i].v - a->v) * (l[i + 1].u - a->u));
+        if (area > best) {
+            best = area;
+            k = i;
+        }
+    }
+    if (!(best > 0))
+        return 0;
+    b = &l[k];
+    c = &l[k + 1];
+    best = (b->u - a->u) * (c->v - a->v) - (b->v - a->v) * (c->u - a->u);
+    probe->qa = ((b->q - a->q) * (c->v - a->v) - (b->v - a->v) * (c->q - a->q)) / best;
+    probe->qb = ((b->u - a->u) * (c->q - a->q) - (b->q - a->q) * (c->u - a->u)) / best;
+    probe->qc = a->q - probe->qa * a->u - probe->qb * a->v;
+    /* Height t over the plane lifts nearness by t q / H (point lamp) or t / cosine. */
+    probe->qc += p->lamp->directional ? lift : lift * a->q;
+    return 1;
+}
+
+/* Boxes of the region on the light's plane; *probed tells whether the probe may be used (one face only). */
+static int region_boxes(const pair *p, const gnoi_view *view, const gnoi_frame *frame, gnoi_lbox boxes[6], gnoi_probe *probe,
+                        int *probed)
+{
+    const gnoi_receiver *r = p->receiver;
+    vec3 hull[GNOI_FRAME_POINTS], corners[4];
+    gnoi_lpoint located[GNOI_FRAME_POINTS];
+    int hull_count = gnoi_poly_hull(p->scene, r->poly, hull), n;
+    *probed = 0;
+    if (r->whole) {
+        if (!gnoi_frame_locate(frame, hull, hull_count, located))
+            return gnoi_frame_boxes(frame, hull, hull_count, boxes);
+        gnoi_frame_box(frame, located, hull_count, &boxes[0]);
+        probe->edge_count = 0;
+        if (p->triangle)
+            set_probe_edges(probe, located, 3);
+        *probed = set_probe_plane(probe, p, located, hull_count);
+        return 1;
+    }
+    if (!region_corners(view, r, corners))
+        return gnoi_frame_boxes(frame, hull, hull_count, boxes);
+    if (!gnoi_frame_locate(frame, corners, 4, located))
+        return frame->faces == 6 ? gnoi_frame_boxes(frame, corners, 4, boxes) : gnoi_frame_boxes(frame, hull, hull_count, boxes);
+    n = frame->faces == 1 ? gnoi_frame_boxes(frame, hull, hull_count, boxes) : 0;
+    gnoi_lbox part;
+    gnoi_frame_box(frame, located, 4, &part);
+    set_probe_edges(probe, located, 4);
+    *probed = set_probe_plane(probe, p, located, 4);
+    if (n == 1)
+        box_intersect(&boxes[0], &part);
+    else
+        boxes[0] = part;
+    return 1;
 }
 
 /* ---- exact tests and shadow polygons ------------------------------------------------------------------------------ */
@@ -320,7 +380,7 @@ static found try_caster(const pair *p, const gnoi_view *view, uint32_t index, gn
     int cut_below, cut_above;
     extent e = {HUGE_VAL, HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     size_t first_edge = columns->edge_count, room = 4 * (size_t)caster->corner_count + 16;
-    ring_points r;
+    ring_points r = {NULL, NULL, 0};
     gnoi_caster *c;
     if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && separated(p, caster)))
         return FOUND_NOTHING;
@@ -451,7 +511,7 @@ static int compare_numbers(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Six-face frames may give a caster once for each face. */
+/* A receiver on several faces may be given a caster once for each. */
 static void drop_repeats(gnoi_list *list)
 {
     size_t n = 0;
@@ -473,19 +533,20 @@ int gnoi_column_find(const gno_scene *scene, const gnoi_view *view, const gnoi_l
 {
     pair p;
     gnoi_lbox boxes[6];
-    int n;
+    gnoi_probe probe;
+    int n, probed;
     columns->asked++;
     column->caster = (uint32_t)columns->caster_count;
     column->caster_count = 0;
     column->state = GNOI_COLUMN_DARK;
     if (!pair_make(&p, scene, view, lamp, receiver))
         return 1;
-    n = region_boxes(scene, view, &tree->frame, receiver, boxes);
+    n = region_boxes(&p, view, &tree->frame, boxes, &probe, &probed);
     columns->found.count = 0;
     for (int i = 0; i < n; i++)
-        if (!gnoi_tree_query(columns->context, tree, &boxes[i], &columns->found))
+        if (!gnoi_tree_query(columns->context, tree, &boxes[i], probed ? &probe : NULL, &columns->found))
             return 0;
-    if (tree->frame.faces > 1)
+    if (n > 1)
         drop_repeats(&columns->found);
     for (size_t i = 0; i < columns->found.count; i++) {
         uint32_t c = columns->found.items[i];

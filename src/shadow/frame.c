@@ -122,16 +122,54 @@ static int clip_pyramid_side(const vec3 *in, int count, int side, vec3 *out)
     return n;
 }
 
+static int dominant_face(vec3 q)
+{
+    double x = fabs(q.x), y = fabs(q.y), z = fabs(q.z);
+    if (x >= y && x >= z)
+        return q.x < 0;
+    if (y >= z)
+        return 2 + (q.y < 0);
+    return 4 + (q.z < 0);
+}
+
+static int locate_on_cube(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lpoint *located)
+{
+    int face = dominant_face(v3_sub(points[0], frame->origin));
+    for (int i = 0; i < count; i++) {
+        vec3 q = to_face(v3_sub(points[i], frame->origin), face);
+        if (!(q.z > 0) || fabs(q.x) > q.z || fabs(q.y) > q.z)
+            return 0;
+        located[i].q = 1 / q.z;
+        located[i].u = q.x * located[i].q + FACE_STEP * face;
+        located[i].v = q.y * located[i].q;
+    }
+    return 1;
+}
+
+int gnoi_frame_locate(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lpoint *located)
+{
+    if (frame->faces == 6)
+        return locate_on_cube(frame, points, count, located);
+    for (int i = 0; i < count; i++) {
+        vec3 q = v3_sub(points[i], frame->origin);
+        double x = v3_dot(q, frame->axis[0]), y = v3_dot(q, frame->axis[1]), z = v3_dot(q, frame->axis[2]);
+        double k = frame->parallel ? 1 : 1 / z;
+        if (!frame->parallel && !(z > 0))
+            return 0;
+        located[i].u = x * k;
+        located[i].v = y * k;
+        located[i].q = frame->parallel ? -z : k;
+    }
+    return 1;
+}
+
 static int face_box(const gnoi_frame *frame, const vec3 *relative, int count, int face, gnoi_lbox *box)
 {
     vec3 ring[2][CUT_POINTS];
-    int n = count, inside = 1;
-    for (int i = 0; i < count; i++) {
+    int n = count;
+    for (int i = 0; i < count; i++)
         ring[0][i] = to_face(relative[i], face);
-        for (int side = 0; side < 4; side++)
-            inside &= pyramid_side(ring[0][i], side) >= 0;
-    }
-    for (int side = 0; side < 4 && !inside && n > 0; side++)
+    for (int side = 0; side < 4 && n > 0; side++)
         n = clip_pyramid_side(ring[side & 1], n, side, ring[~side & 1]);
     if (n == 0)
         return 0;
@@ -147,23 +185,26 @@ static int face_box(const gnoi_frame *frame, const vec3 *relative, int count, in
     return 1;
 }
 
+void gnoi_frame_box(const gnoi_frame *frame, const gnoi_lpoint *located, int count, gnoi_lbox *box)
+{
+    box_clear(box);
+    for (int i = 0; i < count; i++)
+        box_add(box, located[i].u, located[i].v, frame->parallel ? -located[i].q : 1 / located[i].q);
+    box_grow(box, frame);
+}
+
 int gnoi_frame_boxes(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lbox boxes[6])
 {
     vec3 relative[GNOI_FRAME_POINTS];
+    gnoi_lpoint located[GNOI_FRAME_POINTS];
     int n = 0;
-    if (frame->faces == 1) {
-        box_clear(&boxes[0]);
-        for (int i = 0; i < count; i++) {
-            double u, v, z;
-            gnoi_frame_map(frame, points[i], &u, &v, &z);
-            box_add(&boxes[0], u, v, z);
-        }
-        box_grow(&boxes[0], frame);
+    if (gnoi_frame_locate(frame, points, count, located)) {
+        gnoi_frame_box(frame, located, count, &boxes[0]);
         return 1;
     }
-    for (int i = 0; i < count; i++)
+    for (int i = 0; i < count && frame->faces == 6; i++)
         relative[i] = v3_sub(points[i], frame->origin);
-    for (int face = 0; face < 6; face++)
+    for (int face = 0; face < frame->faces && frame->faces == 6; face++)
         n += face_box(frame, relative, count, face, &boxes[n]);
     return n;
 }

@@ -49,20 +49,18 @@ typedef struct gnoi_frame {
 /* lower, upper: bounds of the scene. */
 gnoi_frame gnoi_frame_make(const gnoi_lamp *lamp, const double lower[3], const double upper[3]);
 
-/* Box of one point of a one-face frame. */
-static inline void gnoi_frame_map(const gnoi_frame *frame, vec3 p, double *u, double *v, double *z)
-{
-    vec3 q = v3_sub(p, frame->origin);
-    double x = v3_dot(q, frame->axis[0]), y = v3_dot(q, frame->axis[1]);
-    *z = v3_dot(q, frame->axis[2]);
-    if (!frame->parallel) {
-        double k = 1 / *z;
-        x *= k;
-        y *= k;
-    }
-    *u = x;
-    *v = y;
-}
+/* A point on the light's plane: u, v, and nearness to the light, which is linear in u and v on every plane of the scene
+ * (1/depth, or -depth for a parallel frame). */
+typedef struct gnoi_lpoint {
+    double u, v, q;
+} gnoi_lpoint;
+
+/* Projects points that all lie before one face; returns 0 when they do not (a point behind a one-face frame's light, or points
+ * on several faces). */
+int gnoi_frame_locate(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lpoint *located);
+
+/* The box of points already located. */
+void gnoi_frame_box(const gnoi_frame *frame, const gnoi_lpoint *located, int count, gnoi_lbox *box);
 
 /* Boxes of the ring of `count` points (at most GNOI_FRAME_POINTS), one for each face it reaches. Returns their number. */
 #define GNOI_FRAME_POINTS 8

@@ -7,8 +7,10 @@
 #include <emmintrin.h>
 #endif
 
-#define SIZE_CLASSES 16
-#define MORTON_BITS 14
+/* Classes of size, each this many times smaller than the one before. */
+#define SIZE_CLASSES 8
+#define CLASS_FACTOR (1.0f / 16)
+#define HILBERT_BITS 14
 
 /* ---- boxes ------------------------------------------------------------------------------------------------------ */
 
@@ -73,10 +75,9 @@ int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GN
     return 4;
 }
 
-static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const gnoi_frame *frame, boxes *b)
+static int collect_boxes(const gno_scene *scene, const gnoi_frame *frame, boxes *b)
 {
     const gnoi_prepared *prep = &scene->prepared;
-    (void)lamp;
     for (size_t i = 0; i < prep->poly_count; i++) {
         const gnoi_poly *poly = &prep->polys[i];
         const double *t = scene->materials[poly->material].transmission;
@@ -104,27 +105,35 @@ static float box_size(const gnoi_lbox *b)
     return du > dv ? du : dv;
 }
 
-/* 0 for boxes as large as the whole, one more for each factor of four below it. */
+/* 0 for boxes about as large as the whole, one more for each CLASS_FACTOR below it. */
 static unsigned size_class(float size, float whole)
 {
     unsigned c = 0;
-    for (float s = whole * 0.25f; c < SIZE_CLASSES - 1 && size < s; s *= 0.25f)
+    for (float s = whole * CLASS_FACTOR; c < SIZE_CLASSES - 1 && size < s; s *= CLASS_FACTOR)
         c++;
     return c;
 }
 
-static uint32_t spread_bits(uint32_t x)
+/* Place of a cell along the Hilbert curve. The table takes two bits of each coordinate at a step: entry 16 state + 4 x + y holds
+ * four bits of the place and, above them, the next state (the curve's four orientations). */
+static uint32_t hilbert(uint32_t x, uint32_t y)
 {
-    x = (x | x << 8) & 0x00ff00ffu;
-    x = (x | x << 4) & 0x0f0f0f0fu;
-    x = (x | x << 2) & 0x33333333u;
-    return (x | x << 1) & 0x55555555u;
+    static const unsigned char step[64] = {
+        0, 51, 20, 5, 17, 18, 39, 6, 46, 45, 24, 9, 15, 60, 43, 10, 16, 1, 62, 31, 35, 2, 61, 44, 4, 55, 8, 59, 21, 22, 25, 26,
+        42, 41, 38, 37, 11, 56, 7, 52, 28, 13, 50, 19, 47, 14, 49, 32, 58, 27, 12, 63, 57, 40, 29, 30, 54, 23, 34, 33, 53, 36, 3, 48};
+    uint32_t state = 0, place = 0;
+    for (int shift = HILBERT_BITS - 2; shift >= 0; shift -= 2) {
+        unsigned entry = step[16 * state + 4 * (x >> shift & 3) + (y >> shift & 3)];
+        place = place << 4 | (entry & 15);
+        state = entry >> 4;
+    }
+    return place;
 }
 
 static uint32_t quantise(float x, float lo, float scale)
 {
     float q = (x - lo) * scale;
-    float top = (float)((1 << MORTON_BITS) - 1);
+    float top = (float)((1 << HILBERT_BITS) - 1);
     return (uint32_t)(q < 0 ? 0 : q > top ? top : q);
 }
 
@@ -158,15 +167,52 @@ static void order_boxes(const boxes *b, gnoi_keyed *keys)
     for (int c = 0; c < SIZE_CLASSES; c++)
         for (int k = 0; k < 2; k++) {
             float extent = hi[c][k] - lo[c][k];
-            scale[c][k] = extent > 0 ? (float)((1 << MORTON_BITS) - 1) / extent : 0;
+            scale[c][k] = extent > 0 ? (float)((1 << HILBERT_BITS) - 1) / extent : 0;
         }
     for (size_t i = 0; i < b->count; i++) {
         const gnoi_lbox *x = &b->box[i];
         uint32_t c = keys[i].key;
         uint32_t qu = quantise(x->u0 + x->u1, lo[c][0], scale[c][0]), qv = quantise(x->v0 + x->v1, lo[c][1], scale[c][1]);
-        keys[i].key = c << (2 * MORTON_BITS) | spread_bits(qu) | spread_bits(qv) << 1;
+        keys[i].key = c << (2 * HILBERT_BITS) | hilbert(qu, qv);
         keys[i].value = (uint32_t)i;
     }
+}
+
+/* ---- leaves ----------------------------------------------------------------------------------------------------- */
+
+static void leaf_clear(gnoi_tree_leaf *leaf)
+{
+    for (int i = 0; i < 3; i++)
+        for (int k = 0; k < GNOI_TREE_FAN; k++)
+            leaf->u[i][k] = leaf->v[i][k] = leaf->q[i][k] = NAN;
+}
+
+static void set_leaf(const gno_scene *scene, const gnoi_tree *tree, size_t index, gnoi_tree_leaf *leaf)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    int placed = 0;
+    leaf_clear(leaf);
+    for (size_t k = 0; k < GNOI_TREE_FAN && index * GNOI_TREE_FAN + k < tree->entry_count; k++) {
+        const gnoi_poly *poly = &prep->polys[tree->caster[index * GNOI_TREE_FAN + k]];
+        vec3 p[3];
+        gnoi_lpoint l[3];
+        if (poly->corner_count != 3)
+            continue;
+        for (uint32_t i = 0; i < 3; i++)
+            p[i] = v3_from(scene->positions[prep->corner_vertex[poly->corner + i]]);
+        if (!gnoi_frame_locate(&tree->frame, p, 3, l))
+            continue;
+        if (!placed)
+            leaf->origin = l[0];
+        placed = 1;
+        for (int i = 0; i < 3; i++) {
+            leaf->u[i][k] = (float)(l[i].u - leaf->origin.u);
+            leaf->v[i][k] = (float)(l[i].v - leaf->origin.v);
+            leaf->q[i][k] = (float)(l[i].q - leaf->origin.q);
+        }
+    }
+    if (!placed)
+        leaf->origin.u = leaf->origin.v = leaf->origin.q = 0;
 }
 
 /* ---- packing ---------------------------------------------------------------------------------------------------- */
@@ -215,7 +261,9 @@ static void plan_levels(gnoi_tree *tree)
     }
 }
 
-static void pack(gnoi_tree *tree, const boxes *b, const gnoi_keyed *keys)
+static size_t leaf_count(const gnoi_tree *tree) { return (tree->entry_count + GNOI_TREE_FAN - 1) / GNOI_TREE_FAN; }
+
+static void pack(const gno_scene *scene, gnoi_tree *tree, const boxes *b, const gnoi_keyed *keys)
 {
     for (size_t i = 0; i < tree->node_count; i++)
         node_clear(&tree->nodes[i]);
@@ -224,6 +272,8 @@ static void pack(gnoi_tree *tree, const boxes *b, const gnoi_keyed *keys)
         tree->caster[i] = b->caster[keys[i].value];
         node_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, x->u0, x->u1, x->v0, x->v1, x->z0);
     }
+    for (size_t i = 0; i < leaf_count(tree); i++)
+        set_leaf(scene, tree, i, &tree->leaves[i]);
     for (int level = 1; level < tree->levels; level++) {
         size_t below = tree->level_first[level - 1], first = tree->level_first[level];
         for (size_t i = below; i < first; i++)
@@ -240,18 +290,19 @@ gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, gnoi_t
     memset(tree, 0, sizeof *tree);
     b.context = context;
     tree->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
-    if (!boxes_reserve(&b, scene->prepared.poly_count + 6) || !collect_boxes(scene, lamp, &tree->frame, &b))
+    if (!boxes_reserve(&b, scene->prepared.poly_count + 6) || !collect_boxes(scene, &tree->frame, &b))
         goto done;
     tree->entry_count = b.count;
     plan_levels(tree);
     tree->caster = gnoi_malloc(context, b.count, sizeof *tree->caster);
     tree->nodes = gnoi_malloc(context, tree->node_count, sizeof *tree->nodes);
+    tree->leaves = gnoi_malloc(context, leaf_count(tree), sizeof *tree->leaves);
     keys = gnoi_malloc(context, 2 * b.count, sizeof *keys);
-    if (!tree->caster || !tree->nodes || !keys)
+    if (!tree->caster || !tree->nodes || !tree->leaves || !keys)
         goto done;
     order_boxes(&b, keys);
     gnoi_sort(keys, keys + b.count, b.count);
-    pack(tree, &b, keys);
+    pack(scene, tree, &b, keys);
     status = GNO_OK;
 done:
     gnoi_free(context, keys, 2 * b.count, sizeof *keys);
@@ -265,8 +316,10 @@ void gnoi_tree_free(gno_context *context, gnoi_tree *tree)
 {
     gnoi_free(context, tree->caster, tree->entry_count, sizeof *tree->caster);
     gnoi_free(context, tree->nodes, tree->node_count, sizeof *tree->nodes);
+    gnoi_free(context, tree->leaves, leaf_count(tree), sizeof *tree->leaves);
     tree->caster = NULL;
     tree->nodes = NULL;
+    tree->leaves = NULL;
     tree->entry_count = tree->node_count = 0;
     tree->levels = 0;
 }
@@ -294,6 +347,32 @@ static unsigned meet_mask(const gnoi_tree_node *node, const gnoi_lbox *q)
     return mask;
 }
 
+/* Bit k: triangle k of the leaf is not ruled out by the probe. Edges first, one comparison for all eight at a time. */
+static unsigned probe_mask(const gnoi_tree_leaf *leaf, const gnoi_probe *probe)
+{
+    int32_t out[GNOI_TREE_FAN], behind[GNOI_TREE_FAN];
+    float qa = (float)probe->qa, qb = (float)probe->qb;
+    float qc = (float)(probe->qc + probe->qa * leaf->origin.u + probe->qb * leaf->origin.v - leaf->origin.q);
+    unsigned mask = 0;
+    for (int k = 0; k < GNOI_TREE_FAN; k++) {
+        behind[k] = (leaf->q[0][k] <= qa * leaf->u[0][k] + qb * leaf->v[0][k] + qc) &
+                    (leaf->q[1][k] <= qa * leaf->u[1][k] + qb * leaf->v[1][k] + qc) &
+                    (leaf->q[2][k] <= qa * leaf->u[2][k] + qb * leaf->v[2][k] + qc);
+    }
+    for (int e = 0; e < probe->edge_count; e++) {
+        float a = (float)probe->a[e], b = (float)probe->b[e];
+        float limit = (float)(probe->slack[e] - (probe->c[e] + probe->a[e] * leaf->origin.u + probe->b[e] * leaf->origin.v));
+        for (int k = 0; k < GNOI_TREE_FAN; k++)
+            out[k] = (a * leaf->u[0][k] + b * leaf->v[0][k] <= limit) & (a * leaf->u[1][k] + b * leaf->v[1][k] <= limit) &
+                     (a * leaf->u[2][k] + b * leaf->v[2][k] <= limit);
+        for (int k = 0; k < GNOI_TREE_FAN; k++)
+            behind[k] |= out[k];
+    }
+    for (int k = 0; k < GNOI_TREE_FAN; k++)
+        mask |= (unsigned)!behind[k] << k;
+    return mask;
+}
+
 static unsigned lowest_bit(unsigned mask)
 {
 #if defined(__GNUC__)
@@ -312,7 +391,7 @@ static int list_room(gno_context *context, gnoi_list *list, size_t more)
            gnoi_reserve(context, (void **)&list->items, &list->capacity, list->count + more, sizeof *list->items);
 }
 
-int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, gnoi_list *found)
+int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_list *found)
 {
     struct { int level; uint32_t node; } stack[GNOI_TREE_FAN * GNOI_TREE_LEVELS];
     int top = 0;
@@ -324,8 +403,12 @@ int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox
         int level = stack[--top].level;
         uint32_t node = stack[top].node;
         unsigned mask = meet_mask(&tree->nodes[tree->level_first[level] + node], box);
-        if (level == 0 && mask && !list_room(context, found, GNOI_TREE_FAN))
-            return 0;
+        if (level == 0 && mask) {
+            if (probe)
+                mask &= probe_mask(&tree->leaves[node], probe);
+            if (!list_room(context, found, GNOI_TREE_FAN))
+                return 0;
+        }
         for (; mask; mask &= mask - 1) {
             uint32_t child = node * GNOI_TREE_FAN + lowest_bit(mask);
             if (level == 0) {

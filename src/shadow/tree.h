@@ -1,9 +1,10 @@
 /* tree.h -- a packed tree of the casters' boxes on one light's plane: the sparse rows of the shadow matrix.
  *
  * Place in the data flow: prepared polygons -> boxes on the light's plane (frame.h) -> this tree -> candidate casters of
- * a receiver (column.h). Built without comparing pairs: boxes are sorted by size class and Morton number and packed eight
+ * a receiver (column.h). Built without comparing pairs: boxes are sorted by size class and Hilbert number and packed eight
  * to a node, level by level (after Kamel and Faloutsos, "On packing R-trees", 1993; the size classes keep large polygons from
- * spoiling the nodes of small ones).
+ * spoiling the nodes of small ones). Beside each lowest node lie its triangles' corners, so that most candidates are ruled
+ * out without touching the scene.
  * Invariants: children of node j of a level are entries 8j..8j+7 of the level below; a node's box holds its children's; slots
  * without a child hold an empty box that nothing meets.
  */
@@ -21,6 +22,22 @@ typedef struct gnoi_tree_node {
     float z0[GNOI_TREE_FAN]; /* nearest depth from the light */
 } gnoi_tree_node;
 
+/* The corners of a lowest node's triangles, relative to an origin near them for the sake of precision. Children that are no
+ * triangle on one face have a NaN: every comparison fails, nothing is ruled out. */
+typedef struct gnoi_tree_leaf {
+    gnoi_lpoint origin;
+    float u[3][GNOI_TREE_FAN], v[3][GNOI_TREE_FAN], q[3][GNOI_TREE_FAN];
+} gnoi_tree_leaf;
+
+/* What is known of a receiver on the light's plane. A candidate is ruled out when all its corners lie outside one of the edges
+ * (a u + b v + c <= slack, positive inside) or none is nearer to the light than the receiver's plane. */
+#define GNOI_PROBE_EDGES 4
+typedef struct gnoi_probe {
+    int edge_count;
+    double a[GNOI_PROBE_EDGES], b[GNOI_PROBE_EDGES], c[GNOI_PROBE_EDGES], slack[GNOI_PROBE_EDGES];
+    double qa, qb, qc; /* nearness of the receiver's plane, plus half its tolerance */
+} gnoi_probe;
+
 typedef struct gnoi_tree {
     gnoi_frame frame;
     size_t entry_count;
@@ -29,6 +46,7 @@ typedef struct gnoi_tree {
     size_t level_first[GNOI_TREE_LEVELS];
     size_t node_count;
     gnoi_tree_node *nodes;
+    gnoi_tree_leaf *leaves; /* one for each node of level 0 */
 } gnoi_tree;
 
 /* Builds the tree of every polygon that lets less than all light through. Frees nothing on failure but what it took. */
@@ -41,9 +59,9 @@ typedef struct gnoi_list {
     uint32_t *items;
 } gnoi_list;
 
-/* Appends every caster whose box meets `box` and does not begin behind its farthest depth; a caster may come twice (once for
- * each face of a six-face frame). Returns 0 when memory fails. */
-int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, gnoi_list *found);
+/* Appends every caster whose box meets `box`, does not begin behind its farthest depth and is not ruled out by the probe (NULL:
+ * none); boxes on several faces of a six-face frame may each find the same caster. Returns 0 when memory fails. */
+int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_list *found);
 
 /* Up to 8 points whose hull contains the polygon: its outer corners, or a rectangle in its plane. Returns their number. */
 int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS]);
