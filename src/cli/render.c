@@ -262,7 +262,11 @@ static int run_scene(const job *work, gno_context *context, gno_scene *scene, pr
     stats.scene = work->scene_path;
     stats.width = image.width;
     stats.height = image.height;
-    stats.threads = work->def.threads > 0 ? work->def.threads : (int)sysconf(_SC_NPROCESSORS_ONLN);
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    stats.threads = work->def.threads > 0           ? work->def.threads
+                    : processors < 1                ? 1
+                    : processors > GNO_MAX_THREADS ? GNO_MAX_THREADS
+                                                    : (int)processors;
     stats.load_seconds = seconds_now() - begun;
     /* Through the context, so that the picture is part of the peak memory told by --stats. */
     float *rgb = gno_context_realloc(context, NULL, 0, bytes);
