@@ -169,6 +169,7 @@ static void set_attributes(const gno_scene *scene, size_t p, gnoi_poly *poly)
     const gnoi_object *object = &scene->objects[scene->polygon_object[p]];
     const double *t = material->transmission;
     unsigned shading = object->shading >= 0 ? (unsigned)object->shading : (unsigned)material->shading;
+    memset(poly, 0, sizeof *poly); /* its padding too: the same scene gives the same bytes */
     poly->ring = scene->polygon_start[p];
     poly->corner = scene->ring_start[poly->ring];
     poly->triangle = GNOI_NONE;

@@ -320,7 +320,10 @@ static int average_all(smoothing *s)
 
 /* ---- a crease: sums per point and side --------------------------------------------------------------------------- */
 
-#define KEPT_RESULTS 8 /* sides of a point that share one stored normal; more sides than these only cost memory */
+#define KEPT_RESULTS 8    /* sides of a point that share one stored normal; more sides than these only cost memory */
+#define MOST_PAIRED 2048  /* polygons at a point up to which every pair is looked at */
+#define CELL_ROWS 16      /* of cells along an edge of the cube that parts directions beyond that */
+#define CELLS (6 * CELL_ROWS * CELL_ROWS)
 
 typedef struct listing {
     size_t *start; /* per class, and one more: where its entries begin */
@@ -331,6 +334,12 @@ typedef struct result {
     sum total;
     uint32_t normal;
 } result;
+
+typedef struct cell {
+    sum total;
+    vec3 mean; /* direction of its polygons, zero without any */
+    uint32_t normal;
+} cell;
 
 static void count_entry(void *user, uint32_t class, entry e)
 {
@@ -444,6 +453,69 @@ static int settle_point(smoothing *s, const entry *entries, size_t count, double
     return 1;
 }
 
+/* A point where very many polygons meet, as at the tip of a finely cut cone: pairs of polygons would take too long, so
+ * those of nearly one direction, a cell of some 5 degrees, are taken together and share a normal. */
+static unsigned cell_of(const double n[3])
+{
+    double m[3] = {fabs(n[0]), fabs(n[1]), fabs(n[2])}, u, v;
+    unsigned axis = m[0] > m[1] && m[0] > m[2] ? 0 : m[1] > m[2] ? 1 : 2, face = 2 * axis + (n[axis] < 0), i, j;
+    u = n[(axis + 1) % 3] / m[axis];
+    v = n[(axis + 2) % 3] / m[axis];
+    i = (unsigned)((u + 1) / 2 * CELL_ROWS);
+    j = (unsigned)((v + 1) / 2 * CELL_ROWS);
+    i = i < CELL_ROWS ? i : CELL_ROWS - 1;
+    j = j < CELL_ROWS ? j : CELL_ROWS - 1;
+    return (face * CELL_ROWS + i) * CELL_ROWS + j;
+}
+
+static sum side_of_cell(const cell *cells, const cell *own, double cosine)
+{
+    sum total = {{0, 0, 0}, 0};
+    int i;
+    for (i = 0; i < CELLS; i++) {
+        if (cells[i].total.weight > 0 && v3_dot(own->mean, cells[i].mean) >= cosine) {
+            total.n = v3_add(total.n, cells[i].total.n);
+            total.weight += cells[i].total.weight;
+        }
+    }
+    return total;
+}
+
+static int settle_cells(smoothing *s, const entry *entries, size_t count, double cosine, cell *cells)
+{
+    const gnoi_poly *polys = s->out->polys;
+    size_t i;
+    for (i = 0; i < count; i++) {
+        cell *c = &cells[cell_of(polys[entries[i].poly].n)];
+        add_term(&c->total, &polys[entries[i].poly], entries[i].weight);
+        c->mean = v3_add(c->mean, v3_from(polys[entries[i].poly].n)); /* not zero: the directions of a cell are alike */
+    }
+    for (i = 0; i < CELLS; i++) {
+        cells[i].mean = v3_unit(cells[i].mean);
+        cells[i].normal = GNOI_NONE;
+    }
+    for (i = 0; i < count; i++) {
+        uint32_t *normal = &s->out->corner_normal[entries[i].corner];
+        cell *c = &cells[cell_of(polys[entries[i].poly].n)];
+        if (*normal == GNOI_NONE && c->normal == GNOI_NONE) {
+            sum total = side_of_cell(cells, c, cosine);
+            if (!store_sum(s, &total, entries[i].poly, &c->normal)) {
+                return 0;
+            }
+        }
+        *normal = *normal == GNOI_NONE ? c->normal : *normal;
+    }
+    return 1;
+}
+
+static int settle_crowd(smoothing *s, const entry *entries, size_t count, double cosine)
+{
+    cell *cells = gnoi_calloc(s->scene->context, CELLS, sizeof *cells);
+    int good = cells && settle_cells(s, entries, count, cosine, cells);
+    gnoi_free(s->scene->context, cells, CELLS, sizeof *cells);
+    return good;
+}
+
 static int average_sides(smoothing *s)
 {
     gno_context *context = s->scene->context;
@@ -454,7 +526,9 @@ static int average_sides(smoothing *s)
     int good = make_listing(s, &l, &entry_count);
     for (class = 0; good && class < s->points.count; class++) {
         size_t from = l.start[class], count = l.start[class + 1] - from;
-        good = settle_point(s, l.entries + from, count, cosine, half_cosine);
+        int crowd = count > MOST_PAIRED && !is_one_side(s, l.entries + from, count, half_cosine);
+        good = crowd ? settle_crowd(s, l.entries + from, count, cosine)
+                     : settle_point(s, l.entries + from, count, cosine, half_cosine);
     }
     gnoi_free(context, l.entries, entry_count, sizeof *l.entries);
     gnoi_free(context, l.start, (size_t)s->points.count + 1, sizeof *l.start);
