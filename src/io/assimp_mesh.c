@@ -278,7 +278,7 @@ static gno_status check_file(const gnoi_assimp *a)
     FILE *file = fopen(a->path, "rb");
     if (!file) return gnoi_mesh_fail(a->context, GNO_ERROR_FILE, a->path, 0, "cannot open: %s", strerror(errno));
     fclose(file);
-    return GNO_OK;
+    return has_extension(a->path, ".ply") ? gnoi_ply_check(a->context, a->path) : GNO_OK;
 }
 
 /* NULL after a failure; the text is then aiGetErrorString's. */

@@ -4,6 +4,8 @@
  *
  * Camera: the first one. assimp gives the horizontal angle h and the aspect (0: the file has none; assimp took 1 for glTF,
  * for the others we take the picture's); ours is the vertical angle, 2 atan(tan(h/2)/aspect), in pictures of any shape.
+ * Two faults of assimp's glTF reader before version 5.3 are undone: h is the vertical angle times the aspect (issue 4435),
+ * and the camera's position, always the node's origin, is given as the node's translation once more (issue 5054).
  *
  * Lights: brightness in files is physical (glTF: candela for point and spot lights, which fall off with the square of
  * the distance, lux for directional ones) and would need an exposure. Instead all intensities are multiplied by one factor, so
@@ -12,6 +14,7 @@
  * all else dark. Lights of other formats without a fall-off by the square of the distance keep their intensities.
  */
 #include "assimp_file.h"
+#include <assimp/version.h>
 #include <math.h>
 #include <string.h>
 
@@ -80,12 +83,20 @@ static double camera_aspect(const gnoi_assimp *a, const struct aiCamera *from)
     return (double)image.width / image.height;
 }
 
+/* The vertical angle in degrees. */
+static double camera_angle(const gnoi_assimp *a, const struct aiCamera *from)
+{
+    double horizontal = (double)from->mHorizontalFOV, aspect = camera_aspect(a, from);
+    int is_old = aiGetVersionMajor() < 5 || (aiGetVersionMajor() == 5 && aiGetVersionMinor() < 3);
+    if (a->is_gltf && is_old) return horizontal / aspect * degrees;
+    return 2 * atan(tan(0.5 * horizontal) / aspect) * degrees;
+}
+
 static int convert_camera(const gnoi_assimp *a, const struct aiCamera *from, gno_camera *to)
 {
     gnoi_affine t = place(a, &from->mName);
     double centre[3], view[3];
     scene_centre(a->scene, centre);
-    /* a glTF camera sits at its node's origin, but assimp before 5.3 gives it the node's translation once more (issue 5054) */
     const struct aiVector3D origin = {0, 0, 0};
     transform_point(&t, a->is_gltf ? &origin : &from->mPosition, 1, to->eye);
     transform_point(&t, &from->mLookAt, 0, view);
@@ -94,15 +105,14 @@ static int convert_camera(const gnoi_assimp *a, const struct aiCamera *from, gno
     double reach = distance(to->eye, centre);
     if (!set_length(view, reach > 0 ? reach : 1) || !set_length(to->up, 1)) return 0;
     for (int i = 0; i < 3; i++) to->target[i] = to->eye[i] + view[i];
-    double aspect = camera_aspect(a, from);
     to->type = from->mOrthographicWidth > 0 ? GNO_CAMERA_ORTHOGRAPHIC : GNO_CAMERA_PERSPECTIVE;
     if (to->type == GNO_CAMERA_ORTHOGRAPHIC) { /* the camera's own unit: as long as its up vector has become */
         struct aiVector3D unit = {0, 1, 0};
         double up[3], zero[3] = {0, 0, 0};
         transform_point(&t, &unit, 0, up);
-        to->height = 2 * (double)from->mOrthographicWidth / aspect * distance(up, zero);
+        to->height = 2 * (double)from->mOrthographicWidth / camera_aspect(a, from) * distance(up, zero);
     } else {
-        to->fov = 2 * atan(tan(0.5 * (double)from->mHorizontalFOV) / aspect) * degrees;
+        to->fov = camera_angle(a, from);
     }
     return 1;
 }

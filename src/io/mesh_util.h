@@ -81,4 +81,7 @@ const char *gnoi_mesh_base_name(const char *path);
 gno_status gnoi_obj_load(gno_scene *scene, const char *path, const gnoi_mesh_options *options, gnoi_mesh_result *result);
 gno_status gnoi_assimp_load(gno_scene *scene, const char *path, const gnoi_mesh_options *options, gnoi_mesh_result *result);
 
+/* Looks at the header of a PLY file, for faults that assimp does not survive. */
+gno_status gnoi_ply_check(gno_context *context, const char *path);
+
 #endif

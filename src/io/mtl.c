@@ -97,7 +97,7 @@ static gno_status read_numbers(reader *r, const char *key, const char *p, int mo
         p = gnoi_parse_blank(p, &r->line);
         if (*count > 0 && gnoi_parse_at_end(p)) return GNO_OK;
         const char *end = gnoi_parse_number(p, &values[*count]);
-        if (end == p || end != gnoi_parse_word(p) || !isfinite(values[*count])) return fail_number(r, key, p);
+        if (end == p || !gnoi_parse_ends_word(*end) || !isfinite(values[*count])) return fail_number(r, key, p);
         p = end;
     }
     return GNO_OK;
@@ -246,8 +246,9 @@ static int can_open(const char *path)
 {
     FILE *file = fopen(path, "rb");
     if (!file) return 0;
+    int can_read = fgetc(file) != EOF || !ferror(file); /* a folder can be opened, but not read */
     fclose(file);
-    return 1;
+    return can_read;
 }
 
 /* The library's path beside the OBJ file, in `path`; 0 when memory fails. */

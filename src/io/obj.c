@@ -62,11 +62,6 @@ static inline const char *skip_blank(reader *r, const char *p)
     return (unsigned char)*p > ' ' && *p != '\\' ? p : gnoi_parse_blank(p, &r->line);
 }
 
-static inline int ends_word(char c)
-{
-    return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\\';
-}
-
 /* Room for one more element, and the element; NULL when memory fails. */
 static inline void *push(reader *r, gnoi_mesh_array *array, size_t size)
 {
@@ -97,7 +92,7 @@ static const char *read_numbers(reader *r, const char *p, const char *key, int n
             continue;
         }
         const char *end = gnoi_parse_number(p, &values[i]);
-        if (end == p || !ends_word(*end) || !isfinite(values[i])) return stop_number(r, key, p, i);
+        if (end == p || !gnoi_parse_ends_word(*end) || !isfinite(values[i])) return stop_number(r, key, p, i);
         p = end;
     }
     return p;
@@ -177,14 +172,14 @@ static inline const char *read_corner(reader *r, const char *p)
     p = read_index(r, p, word, kind_vertex, &index[kind_vertex]);
     if (p && *p == '/') {
         p++;
-        if (*p != '/' && !ends_word(*p)) p = read_index(r, p, word, kind_texcoord, &index[kind_texcoord]);
+        if (*p != '/' && !gnoi_parse_ends_word(*p)) p = read_index(r, p, word, kind_texcoord, &index[kind_texcoord]);
         if (p && *p == '/') {
             p++;
-            if (!ends_word(*p)) p = read_index(r, p, word, kind_normal, &index[kind_normal]);
+            if (!gnoi_parse_ends_word(*p)) p = read_index(r, p, word, kind_normal, &index[kind_normal]);
         }
     }
     if (!p) return NULL;
-    if (!ends_word(*p)) return stop_corner(r, word);
+    if (!gnoi_parse_ends_word(*p)) return stop_corner(r, word);
     int *corner = push(r, &r->corners[kind_vertex], sizeof(int));
     if (!corner) return stop_memory(r);
     *corner = index[kind_vertex];
@@ -291,7 +286,7 @@ static const char *read_object_name(reader *r, const char *p)
 
 static int starts_with_word(const char *p, const char *word, size_t length)
 {
-    return strncmp(p, word, length) == 0 && ends_word(p[length]);
+    return strncmp(p, word, length) == 0 && gnoi_parse_ends_word(p[length]);
 }
 
 /* p is at the first word of a statement; what the reader leaves unread of it is skipped by the caller. */
@@ -299,14 +294,14 @@ static const char *read_statement(reader *r, const char *p)
 {
     switch (*p) {
     case 'v':
-        if (ends_word(p[1])) return read_point(r, p + 1, kind_vertex);
-        if (p[1] == 'n' && ends_word(p[2])) return read_point(r, p + 2, kind_normal);
-        if (p[1] == 't' && ends_word(p[2])) return read_point(r, p + 2, kind_texcoord);
+        if (gnoi_parse_ends_word(p[1])) return read_point(r, p + 1, kind_vertex);
+        if (p[1] == 'n' && gnoi_parse_ends_word(p[2])) return read_point(r, p + 2, kind_normal);
+        if (p[1] == 't' && gnoi_parse_ends_word(p[2])) return read_point(r, p + 2, kind_texcoord);
         return p;
-    case 'f': return ends_word(p[1]) ? read_face(r, p + 1) : p;
+    case 'f': return gnoi_parse_ends_word(p[1]) ? read_face(r, p + 1) : p;
     case 'u': return starts_with_word(p, "usemtl", 6) ? use_material(r, p + 6) : p;
     case 'm': return starts_with_word(p, "mtllib", 6) ? read_libraries(r, p + 6) : p;
-    case 'o': return ends_word(p[1]) ? read_object_name(r, p + 1) : p;
+    case 'o': return gnoi_parse_ends_word(p[1]) ? read_object_name(r, p + 1) : p;
     default: return p;
     }
 }
@@ -317,10 +312,9 @@ static gno_status read_block(reader *r, const char *p, const char *last)
         r->line++;
         if ((unsigned char)*p <= ' ' || *p == '\\') p = gnoi_parse_blank(p, &r->line);
         if (*p != '\n') {
-            p = *p == '#' ? gnoi_parse_line_end(p) : read_statement(r, p);
+            p = read_statement(r, p);
             if (!p) return r->status;
-            /* what is left: nothing, a comment, which no backslash continues, or words that are not read */
-            if (*p != '\n') p = *p == '#' ? gnoi_parse_line_end(p) : gnoi_parse_statement_end(p, &r->line);
+            if (*p != '\n') p = gnoi_parse_statement_end(p, &r->line); /* a comment, or words that are not read */
         }
         p++;
     }

@@ -203,11 +203,10 @@ const char *gnoi_parse_text_end(const char *p)
 
 const char *gnoi_parse_statement_end(const char *p, size_t *line)
 {
-    for (;;) {
-        const char *end = gnoi_parse_line_end(p);
-        const char *text = end > p && end[-1] == '\r' ? end - 1 : end;
-        if (text == p || text[-1] != '\\') return end;
-        ++*line;
-        p = end + 1;
+    for (;; p++) {
+        while (*p != '\n' && *p != '#' && *p != '\\') p++;
+        if (*p != '\\') return gnoi_parse_line_end(p);
+        const char *next = gnoi_parse_blank(p, line);
+        if (next > p) p = next - 1; /* the next line's first character is still to be looked at */
     }
 }

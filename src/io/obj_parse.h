@@ -25,7 +25,7 @@ const char *gnoi_parse_line_end(const char *p);
 /* The end of p's line's text: the newline without blanks before it. */
 const char *gnoi_parse_text_end(const char *p);
 
-/* The newline that ends the statement at p; counts lines continued by a backslash. */
+/* The newline that ends the statement at p; counts lines continued by a backslash. A comment is not continued. */
 const char *gnoi_parse_statement_end(const char *p, size_t *line);
 
 /* 1 at the end of a statement's words: newline or comment. */
@@ -37,6 +37,12 @@ static inline int gnoi_parse_at_end(const char *p)
 static inline int gnoi_parse_is_blank(char c)
 {
     return c == ' ' || c == '\t' || c == '\r';
+}
+
+/* 1 for what may stand right after a number or keyword. */
+static inline int gnoi_parse_ends_word(char c)
+{
+    return c == ' ' || c == '\n' || c == '\r' || c == '\t' || c == '\\' || c == '#';
 }
 
 #endif
