@@ -281,9 +281,10 @@ typedef enum gno_terminator {
 } gno_terminator;
 
 typedef struct gno_render_def {
-    int lines;      /* sample lines per pixel row where the picture varies; default 12 */
-    int base_lines; /* sample lines everywhere; lines must be an odd multiple of it; default 4. Equal to lines: no refinement */
-    double refine_above; /* linear contrast within a pixel or between it and its upper and lower neighbour that calls for `lines`; default 0.02 */
+    int lines;      /* sample lines per pixel row at the finest; default 18 */
+    int base_lines; /* sample lines everywhere; default 2. Equal to lines: no refinement. Else lines must be an odd multiple of
+                       base_lines, base_lines at most 4, and pixels whose colour bends from line to line get all the lines */
+    double refine_above; /* bend (second difference, linear colour) that calls for more lines; default 0.02 */
     int threads;    /* 0 (default): one per processor */
     gno_terminator terminator;
 } gno_render_def;

@@ -9,8 +9,8 @@
 gno_render_def gno_render_def_default(void)
 {
     gno_render_def def;
-    def.lines = 12;
-    def.base_lines = 4;
+    def.lines = 18;
+    def.base_lines = 2;
     def.refine_above = 0.02;
     def.threads = 0;
     def.terminator = GNO_TERMINATOR_EXACT;
@@ -23,6 +23,9 @@ static gno_status check_def(gno_context *context, const gno_render_def *def)
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "lines: %d is not between 1 and %d", def->lines, GNO_MAX_LINES);
     if (def->base_lines < 1 || def->lines % def->base_lines != 0 || def->lines / def->base_lines % 2 == 0)
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "lines: %d is not an odd multiple of %d base lines", def->lines,
+                         def->base_lines);
+    if (def->lines > def->base_lines && def->base_lines > GNOI_BASE_LINES)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "lines: at most %d base lines can be refined, not %d", GNOI_BASE_LINES,
                          def->base_lines);
     if (!(def->refine_above >= 0))
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "refine_above: %g is negative", def->refine_above);

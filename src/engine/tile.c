@@ -3,7 +3,7 @@
 #include <string.h>
 
 /* Marked runs of a row nearer than this many pixels are taken as one. */
-#define RUN_GAP 3
+#define RUN_GAP 1
 
 int gnoi_tile_init(gnoi_tile *tile, const gnoi_frame_job *job)
 {
@@ -58,12 +58,7 @@ static void start_tile(gnoi_tile *tile, size_t index)
     gnoi_columns_reset(&tile->store);
     memset(tile->acc, 0, sizeof tile->acc);
     memset(tile->weight, 0, sizeof tile->weight);
-    memset(tile->marked, 0, sizeof tile->marked);
-    for (int k = 0; k < 3; k++)
-        for (int i = 0; i < GNOI_TILE_PIXELS; i++) {
-            tile->low[k][i] = HUGE_VALF;
-            tile->high[k][i] = -HUGE_VALF;
-        }
+    memset(tile->line_acc, 0, sizeof tile->line_acc);
 }
 
 /* Lines y = (i + 1/2) / base in every row; the rows of the apron have only the one next to the tile. */
@@ -83,35 +78,36 @@ static void add_base_lines(gnoi_tile *tile)
     tile->row_line[rows] = (uint32_t)tile->lines.line_count;
 }
 
-/* The lines between the base lines, over [first,last] of one row. */
+/* The lines between the base lines, over pixels [first,last] of one row. */
 static void add_fine_lines(gnoi_tile *tile, int row, int first, int last)
 {
-    const gno_render_def *def = &tile->job->def;
-    int factor = def->lines / def->base_lines;
-    for (int i = 0; i < def->lines; i++)
+    int count = tile->job->def.lines, factor = count / tile->job->def.base_lines;
+    for (int i = 0; i < count; i++)
         if (i % factor != factor / 2)
-            gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / def->lines, first * GNOI_X_ONE, (last + 1) * GNOI_X_ONE);
+            gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, first * GNOI_X_ONE, (last + 1) * GNOI_X_ONE);
+    tile->refined += last - first + 1;
 }
 
-static int differs(const gnoi_tile *tile, int a, int b)
+/* Whether the colour of pixel i bends from line to line by more than the def allows: where it changes evenly the lines'
+ * mean is right already. The lines next to the pixel's own, above and below, take part. */
+static int bends(const gnoi_tile *tile, int i)
 {
+    int n = tile->job->def.base_lines;
+    float limit = (float)tile->job->def.refine_above;
     for (int k = 0; k < 3; k++) {
-        float d = tile->acc[k][a] / tile->weight[a] - tile->acc[k][b] / tile->weight[b];
-        if (fabsf(d) > (float)tile->job->def.refine_above)
-            return 1;
+        float a = tile->line_acc[n - 1][k][i - GNOI_TILE_W], b = tile->line_acc[0][k][i];
+        for (int l = 1; l <= n; l++) {
+            float c = l < n ? tile->line_acc[l][k][i] : tile->line_acc[0][k][i + GNOI_TILE_W];
+            if (fabsf(a - 2 * b + c) > limit)
+                return 1;
+            a = b;
+            b = c;
+        }
     }
     return 0;
 }
 
-static int varies(const gnoi_tile *tile, int i)
-{
-    for (int k = 0; k < 3; k++)
-        if (tile->high[k][i] - tile->low[k][i] > (float)tile->job->def.refine_above)
-            return 1;
-    return differs(tile, i, i - GNOI_TILE_W) || differs(tile, i, i + GNOI_TILE_W);
-}
-
-/* Marks the pixels that vary and adds their lines; returns 0 when there are none. */
+/* Adds lines where the colour bends; returns 0 when it does nowhere. */
 static int plan_refinement(gnoi_tile *tile)
 {
     gnoi_lines_reset(&tile->lines);
@@ -120,21 +116,17 @@ static int plan_refinement(gnoi_tile *tile)
         int run = -1, last = 0;
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
         for (int x = 0; x < tile->width; x++) {
-            int i = row * GNOI_TILE_W + x;
-            if (!tile->marked[i] && !varies(tile, i))
+            if (!bends(tile, row * GNOI_TILE_W + x))
                 continue;
             if (run >= 0 && x - last > RUN_GAP) {
                 add_fine_lines(tile, row, run, last);
-                tile->refined += last - run + 1;
                 run = -1;
             }
             run = run < 0 ? x : run;
             last = x;
         }
-        if (run >= 0) {
+        if (run >= 0)
             add_fine_lines(tile, row, run, last);
-            tile->refined += last - run + 1;
-        }
     }
     tile->row_line[tile->height + 1] = tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
     return tile->lines.line_count > 0;
@@ -169,9 +161,11 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
     gnoi_tile_sort(tile, items, count);
     if (tile->failed)
         return 0;
+    tile->judging = job->def.lines > job->def.base_lines;
     add_base_lines(tile);
     gnoi_tile_draw(tile, items, count);
     make_rows(tile);
+    tile->judging = 0;
     if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile)) {
         gnoi_tile_draw(tile, items, count);
         make_rows(tile);

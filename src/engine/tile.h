@@ -35,6 +35,8 @@ typedef struct gnoi_frame_job {
 #define GNOI_TILE_ROWS (GNOI_TILE_H + 2)
 #define GNOI_TILE_PIXELS (GNOI_TILE_ROWS * GNOI_TILE_W)
 
+#define GNOI_BASE_LINES 4 /* at most, where refinement is to judge by them */
+
 /* A surface seen in the tile. */
 typedef struct gnoi_slot {
     gnoi_receiver receiver;
@@ -49,6 +51,7 @@ typedef struct gnoi_slot {
  * offset of its middle from the pixel's centre. Lengths in pixels. */
 typedef struct gnoi_cells {
     float length[GNOI_TILE_W], mx[GNOI_TILE_W], my[GNOI_TILE_W];
+    float by_line[GNOI_BASE_LINES][GNOI_TILE_W]; /* length on each base line; not kept for finer lines */
 } gnoi_cells;
 
 typedef struct gnoi_tile {
@@ -79,13 +82,15 @@ typedef struct gnoi_tile {
     gnoi_cells cells;
     gnoi_cells *lit;                       /* one for each lamp */
     float (*lit_colour)[3][GNOI_TILE_W];   /* one for each lamp: length times light that came through */
-    float row_cover[GNOI_TILE_W];
+    float row_cover[GNOI_TILE_W], row_by_line[GNOI_BASE_LINES][GNOI_TILE_W];
+    int judging;                           /* base lines are being made for refinement: colours are kept by line */
     gnoi_batch batch;
     size_t intensity_count, intensity_capacity;
     double (*intensities)[3];
-    float acc[3][GNOI_TILE_PIXELS], low[3][GNOI_TILE_PIXELS], high[3][GNOI_TILE_PIXELS];
+    float acc[3][GNOI_TILE_PIXELS];        /* sums over lines */
     float weight[GNOI_TILE_PIXELS];        /* lines that cover the pixel */
-    unsigned char marked[GNOI_TILE_PIXELS];
+    float line_acc[GNOI_BASE_LINES][3][GNOI_TILE_PIXELS]; /* the pixel's colour on each base line */
+    float cover_by_line[GNOI_BASE_LINES][GNOI_BATCH]; /* beside the batch */
     double spans, shaded, refined;
 } gnoi_tile;
 
@@ -103,9 +108,10 @@ void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
 /* tile_rows.c: makes samples of every visible piece of row `row` (apron included). */
 void gnoi_tile_row(gnoi_tile *tile, int row);
 
-/* tile_shade.c: one sample of a slot at a picture point: `pixel` of the tile, `coverage` in lines; lamp_weight[j] what share of
- * it lamp j reaches, times coverage; tint: factor on the reflected light (NULL: 1). Flushed when the batch is full. */
-void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int pixel, double x, double y, float coverage, const float *tint);
+/* tile_shade.c: one sample of a slot: the part of pixel `column` of `row` that `cells` hold, at its middle. The caller has
+ * set batch.weight[lamp][batch.count] to the coverage (in lines) that each lamp reaches. tint NULL: the surface with its ambient
+ * term; else the part that one lamp alone reaches, with this factor on the light. Flushed when the batch is full. */
+void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint);
 void gnoi_tile_flush(gnoi_tile *tile);
 int gnoi_tile_is_precomputed(const gnoi_slot *slot);
 

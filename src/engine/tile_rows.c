@@ -13,32 +13,38 @@ static void cells_clear(gnoi_cells *cells, int first, int last)
     memset(cells->length + first, 0, size);
     memset(cells->mx + first, 0, size);
     memset(cells->my + first, 0, size);
+    for (int i = 0; i < GNOI_BASE_LINES; i++)
+        memset(cells->by_line[i] + first, 0, size);
 }
 
-/* Adds [a,b) within one pixel; a, b in pixels from its left side, dy from the row's middle. */
-static void cells_add_part(gnoi_cells *cells, int pixel, float a, float b, float dy)
+/* Adds [a,b) within one pixel; a, b in pixels from its left side, dy from the row's middle; line: the base line, -1 another. */
+static void cells_add_part(gnoi_cells *cells, int pixel, float a, float b, float dy, int line)
 {
     float length = b - a;
     cells->length[pixel] += length;
     cells->mx[pixel] += length * (0.5f * (a + b) - 0.5f);
     cells->my[pixel] += length * dy;
+    if (line >= 0)
+        cells->by_line[line][pixel] += length;
 }
 
 /* Adds [x0,x1), in pixels from the tile's left side. */
-static void cells_add(gnoi_cells *cells, float x0, float x1, float dy)
+static void cells_add(gnoi_cells *cells, float x0, float x1, float dy, int line)
 {
     int p0 = (int)x0, p1 = (int)x1;
     if (p0 == p1) {
-        cells_add_part(cells, p0, x0 - (float)p0, x1 - (float)p0, dy);
+        cells_add_part(cells, p0, x0 - (float)p0, x1 - (float)p0, dy, line);
         return;
     }
-    cells_add_part(cells, p0, x0 - (float)p0, 1, dy);
+    cells_add_part(cells, p0, x0 - (float)p0, 1, dy, line);
     for (int p = p0 + 1; p < p1; p++) {
         cells->length[p] += 1;
         cells->my[p] += dy;
     }
+    for (int p = p0 + 1; p < p1 && line >= 0; p++)
+        cells->by_line[line][p] += 1;
     if (x1 > (float)p1)
-        cells_add_part(cells, p1, 0, x1 - (float)p1, dy);
+        cells_add_part(cells, p1, 0, x1 - (float)p1, dy, line);
 }
 
 /* The light that came through on [x0,x1), by pixel. */
@@ -74,7 +80,8 @@ static gnoi_column *slot_columns(gnoi_tile *tile, gnoi_slot *slot)
 }
 
 /* Splits one piece by the column's shadow polygons and adds what is lit. */
-static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, const gnoi_piece *piece, float dy)
+static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, const gnoi_piece *piece, float dy,
+                        int line)
 {
     const gnoi_frame_job *job = tile->job;
     double x0 = tile->x0 + (double)piece->x0 / GNOI_X_ONE, x1 = tile->x0 + (double)piece->x1 / GNOI_X_ONE;
@@ -92,7 +99,7 @@ static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_colum
         float a = (float)(part->x0 - tile->x0), b = (float)(part->x1 - tile->x0);
         if (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0))
             continue;
-        cells_add(&tile->lit[lamp], a, b, dy);
+        cells_add(&tile->lit[lamp], a, b, dy, line);
         add_colour(tile->lit_colour[lamp], a, b, part->light);
     }
 }
@@ -108,9 +115,8 @@ static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
 static void sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel)
 {
     const gnoi_cells *cells = &tile->cells;
-    int lamps = tile->job->lamp_count, index = row * GNOI_TILE_W + pixel;
+    int lamps = tile->job->lamp_count;
     float cover = cells->length[pixel], *weight = tile->batch.weight;
-    double cx = tile->x0 + pixel + 0.5, cy = tile->y0 + row - 0.5;
     size_t at = (size_t)tile->batch.count;
     unsigned parts = 0;
     for (int j = 0; j < lamps; j++) {
@@ -125,7 +131,7 @@ static void sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
         }
         weight[(size_t)j * GNOI_BATCH + at] = w;
     }
-    gnoi_tile_sample(tile, slot, index, cx + (double)(cells->mx[pixel] / cover), cy + (double)(cells->my[pixel] / cover), cover, NULL);
+    gnoi_tile_sample(tile, slot, row, pixel, cells, NULL);
     for (int j = 0; j < lamps && parts; j++) {
         const gnoi_cells *lit = &tile->lit[j];
         float length = lit->length[pixel], tint[3];
@@ -139,9 +145,15 @@ static void sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
         for (int k = 0; k < lamps; k++)
             weight[(size_t)k * GNOI_BATCH + at] = 0;
         weight[(size_t)j * GNOI_BATCH + at] = length;
-        gnoi_tile_sample(tile, slot, index, cx + (double)(lit->mx[pixel] / length), cy + (double)(lit->my[pixel] / length), 0, tint);
+        gnoi_tile_sample(tile, slot, row, pixel, lit, tint);
         parts--;
     }
+}
+
+/* Which of its row's base lines a line is; the one line of the apron above is the last, of the apron below the first. */
+static int base_line(const gnoi_tile *tile, int row, uint32_t line)
+{
+    return row == 0 ? tile->job->def.base_lines - 1 : (int)(line - tile->row_line[row]);
 }
 
 static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
@@ -163,15 +175,18 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
             clear_lamp(tile, j, first, last);
     for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
         float dy = (float)(tile->lines.lines[pieces[p].line].y - (tile->y0 + row - 0.5));
-        cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE, dy);
+        int line = tile->judging ? base_line(tile, row, pieces[p].line) : -1;
+        cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE, dy, line);
         for (int j = 0; j < lamps; j++)
             if (columns[j].state == GNOI_COLUMN_SPLIT)
-                split_piece(tile, slot, &columns[j], j, &pieces[p], dy);
+                split_piece(tile, slot, &columns[j], j, &pieces[p], dy, line);
         tile->spans++;
     }
     for (int pixel = first; pixel <= last && !tile->failed; pixel++)
         if (tile->cells.length[pixel] > 0) {
             tile->row_cover[pixel] += tile->cells.length[pixel];
+            for (int i = 0; i < tile->job->def.base_lines && tile->judging; i++)
+                tile->row_by_line[i][pixel] += tile->cells.by_line[i][pixel];
             sample_pixel(tile, slot, columns, row, pixel);
         }
 }
@@ -199,21 +214,21 @@ static void add_background(gnoi_tile *tile, int row)
     float due[GNOI_TILE_W] = {0};
     for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++) {
         const gnoi_line *l = &tile->lines.lines[line];
-        for (int p = l->xa / GNOI_X_ONE; p < l->xb / GNOI_X_ONE; p++)
+        for (int p = l->xa / GNOI_X_ONE; p < l->xb / GNOI_X_ONE; p++) {
             due[p] += 1;
+            if (!tile->judging)
+                continue;
+            int i = base_line(tile, row, line);
+            for (int k = 0; k < 3; k++)
+                tile->line_acc[i][k][row * GNOI_TILE_W + p] += (1 - tile->row_by_line[i][p]) * (float)background[k];
+        }
     }
     for (int p = 0; p < tile->width; p++) {
         int index = row * GNOI_TILE_W + p;
         float free_cover = due[p] - tile->row_cover[p];
         tile->weight[index] += due[p];
-        if (!(free_cover > 0))
-            continue;
-        for (int k = 0; k < 3; k++) {
-            float c = (float)background[k];
-            tile->acc[k][index] += free_cover * c;
-            tile->low[k][index] = c < tile->low[k][index] ? c : tile->low[k][index];
-            tile->high[k][index] = c > tile->high[k][index] ? c : tile->high[k][index];
-        }
+        for (int k = 0; k < 3 && free_cover > 0; k++)
+            tile->acc[k][index] += free_cover * (float)background[k];
     }
 }
 
@@ -228,6 +243,7 @@ void gnoi_tile_row(gnoi_tile *tile, int row)
     }
     count = chain_pieces(tile, row);
     memset(tile->row_cover, 0, sizeof tile->row_cover);
+    memset(tile->row_by_line, 0, sizeof tile->row_by_line);
     for (size_t i = 0; i < count; i++) {
         gnoi_slot *slot = &tile->slots[tile->touched[i]];
         if (!tile->failed)

@@ -5,8 +5,6 @@
  */
 #include "engine/tile.h"
 
-#define EXTRA_SAMPLE 0x80000000u /* a tag's mark: the lit part under one lamp only */
-
 int gnoi_tile_is_precomputed(const gnoi_slot *slot)
 {
     uint32_t s = slot->receiver.poly->shading;
@@ -15,17 +13,15 @@ int gnoi_tile_is_precomputed(const gnoi_slot *slot)
 
 /* ---- into the picture --------------------------------------------------------------------------------------------- */
 
-static void add_colour(gnoi_tile *tile, uint32_t pixel, int extra, float weight, const float rgb[3])
+static void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], float coverage, const float *by_line, size_t stride)
 {
-    for (int k = 0; k < 3; k++) {
-        float c = rgb[k] / weight, *low = &tile->low[k][pixel], *high = &tile->high[k][pixel];
+    int lines = tile->judging ? tile->job->def.base_lines : 0;
+    for (int k = 0; k < 3; k++)
         tile->acc[k][pixel] += rgb[k];
-        if (extra) {
-            tile->marked[pixel] |= c > (float)tile->job->def.refine_above;
-            continue;
-        }
-        *low = c < *low ? c : *low;
-        *high = c > *high ? c : *high;
+    for (int i = 0; i < lines; i++) {
+        float share = by_line[(size_t)i * stride] / coverage;
+        for (int k = 0; k < 3 && share > 0; k++)
+            tile->line_acc[i][k][pixel] += share * rgb[k];
     }
 }
 
@@ -35,8 +31,7 @@ void gnoi_tile_flush(gnoi_tile *tile)
     gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
     for (int i = 0; i < b->count; i++) {
         float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]};
-        int extra = (b->tag[i] & EXTRA_SAMPLE) != 0;
-        add_colour(tile, b->tag[i] & ~EXTRA_SAMPLE, extra, b->coverage[i], rgb);
+        add_colour(tile, b->tag[i], rgb, b->coverage[i], &tile->cover_by_line[0][i], GNOI_BATCH);
     }
     tile->shaded += b->count;
     b->count = 0;
@@ -124,26 +119,26 @@ static double (*seek_intensities(gnoi_tile *tile, gnoi_slot *slot, double x, dou
     return &tile->intensities[slot->first_intensity];
 }
 
-static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int pixel, double x, double y, float coverage, const float *tint)
+static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, const gnoi_cells *cells,
+                               const float *tint)
 {
     const gnoi_frame_job *job = tile->job;
     const gno_material *material = &job->scene->materials[slot->receiver.poly->material];
     size_t lamps = (size_t)job->lamp_count, corners = slot->receiver.poly->shading == GNO_SHADING_GOURAUD ? 3 : 1;
     double w[3], (*intensity)[3] = seek_intensities(tile, slot, x, y, w);
-    float rgb[3], weight = coverage;
+    float rgb[3], coverage = cells->length[column];
     if (!intensity)
         return;
     for (int k = 0; k < 3; k++)
-        rgb[k] = coverage * (float)(job->scene->ambient[k] * material->ambient[k]);
+        rgb[k] = tint ? 0 : coverage * (float)(job->scene->ambient[k] * material->ambient[k]);
     for (size_t j = 0; j < lamps; j++) {
         float lamp_weight = tile->batch.weight[j * GNOI_BATCH + (size_t)tile->batch.count];
-        weight = lamp_weight > weight ? lamp_weight : weight;
         for (size_t i = 0; i < corners && lamp_weight > 0; i++)
             for (int k = 0; k < 3; k++)
                 rgb[k] += lamp_weight * (tint ? tint[k] : 1) * (float)(w[i] * intensity[i * lamps + j][k]);
     }
     tile->shaded++;
-    add_colour(tile, (uint32_t)pixel, tint != NULL, weight, rgb);
+    add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, coverage, &cells->by_line[0][column], GNOI_TILE_W);
 }
 
 /* ---- samples for the batch ----------------------------------------------------------------------------------------- */
@@ -187,24 +182,25 @@ static void set_material(gnoi_batch *b, int i, const gno_scene *scene, const gno
     b->shininess[i] = (float)m->shininess;
 }
 
-void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int pixel, double x, double y, float coverage, const float *tint)
+void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint)
 {
     const gnoi_frame_job *job = tile->job;
     gnoi_batch *b = &tile->batch;
+    float coverage = cells->length[column];
+    double x = tile->x0 + column + 0.5 + (double)(cells->mx[column] / coverage);
+    double y = tile->y0 + row - 0.5 + (double)(cells->my[column] / coverage);
     int i = b->count;
     if (gnoi_tile_is_precomputed(slot)) {
-        sample_precomputed(tile, slot, pixel, x, y, coverage, tint);
+        sample_precomputed(tile, slot, row, column, x, y, cells, tint);
         return;
     }
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
     set_normal(b, i, job, slot, x, y);
     set_material(b, i, job->scene, &job->scene->materials[slot->receiver.poly->material], coverage, tint);
     b->coverage[i] = coverage;
-    for (int j = 0; j < job->lamp_count && tint; j++) {
-        float w = b->weight[(size_t)j * GNOI_BATCH + (size_t)i];
-        b->coverage[i] = w > 0 ? w : b->coverage[i];
-    }
-    b->tag[i] = (uint32_t)pixel | (tint ? EXTRA_SAMPLE : 0);
+    for (int l = 0; l < job->def.base_lines && tile->judging; l++)
+        tile->cover_by_line[l][i] = cells->by_line[l][column];
+    b->tag[i] = (uint32_t)(row * GNOI_TILE_W + column);
     if (++b->count == GNOI_BATCH)
         gnoi_tile_flush(tile);
 }
