@@ -3,8 +3,9 @@
 #define GNOI_BASE_TOLERANCE_H
 
 /* Share of the scene's largest coordinate extent (with its offset from the origin): points of two planes nearer than this
- * lie on one plane. Model files carry 6 to 7 significant digits, so faces meant to be coplanar differ by some 1e-7. */
-#define GNOI_COPLANAR 1e-6
+ * lie on one plane. Model files carry 6 to 7 significant digits, so faces meant to be coplanar differ by some 1e-7, and the
+ * plane of a small face, drawn out over a large one, by ten times that. */
+#define GNOI_COPLANAR 4e-6
 
 /* A polygon whose corners leave its plane by more than this share of its own extent is not planar (split into triangles);
  * never stricter than GNOI_COPLANAR of the scene. */

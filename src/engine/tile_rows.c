@@ -7,6 +7,10 @@
 #include "engine/tile.h"
 #include <string.h>
 
+/* Lit parts shorter than this, in pixels, are where rounding parts a receiver's end from its caster's edge: not light but
+ * a leak. Spans end on multiples of half of it. */
+#define LEAK_LENGTH (2.0f / GNOI_X_ONE)
+
 static void cells_clear(gnoi_cells *cells, int first, int last)
 {
     size_t size = (size_t)(last - first + 1) * sizeof(float);
@@ -97,7 +101,7 @@ static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_colum
     for (size_t i = 0; i < n; i++) {
         const gno_span_part *part = &tile->parts[i];
         float a = (float)(part->x0 - tile->x0), b = (float)(part->x1 - tile->x0);
-        if (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0))
+        if (b - a < LEAK_LENGTH || (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0)))
             continue;
         cells_add(&tile->lit[lamp], a, b, dy, line);
         add_colour(tile->lit_colour[lamp], a, b, part->light);

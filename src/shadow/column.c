@@ -207,6 +207,17 @@ static int rises(const pair *p, const gnoi_poly *caster, int *cut_below, int *cu
     return above;
 }
 
+/* 1 when the receiver lies on the caster's plane: the two are coplanar where it matters, though the small one's plane, drawn out
+ * from corners that a file rounded, may leave the large one's far corners. */
+static int carries(const pair *p, const gnoi_poly *caster)
+{
+    const gnoi_poly *poly = p->receiver->poly;
+    for (uint32_t i = 0; i < poly->corner_count; i++)
+        if (fabs(v3_dot(v3_from(caster->n), corner_position(p->scene, poly->corner + i)) + caster->d) > p->tolerance)
+            return 0;
+    return 1;
+}
+
 /* 1 when a plane through the light and an edge of the receiver has the whole caster on its outer side. */
 static int separated(const pair *p, const gnoi_poly *caster)
 {
@@ -382,7 +393,7 @@ static found try_caster(const pair *p, const gnoi_view *view, uint32_t index, gn
     size_t first_edge = columns->edge_count, room = 4 * (size_t)caster->corner_count + 16;
     ring_points r = {NULL, NULL, 0};
     gnoi_caster *c;
-    if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && separated(p, caster)))
+    if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && region->whole && separated(p, caster)) || carries(p, caster))
         return FOUND_NOTHING;
     if (!gnoi_reserve(columns->context, (void **)&columns->points, &columns->point_capacity, 2 * room, sizeof *columns->points) ||
         !gnoi_reserve(columns->context, (void **)&columns->casters, &columns->caster_capacity, columns->caster_count + 1,

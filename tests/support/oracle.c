@@ -15,6 +15,10 @@
 #define COPLANAR 1e-6
 /* Area over squared perimeter below which a polygon counts as having none. */
 #define NO_AREA 1e-12
+/* How far towards a lamp a caster may stand, as a share of the way: a polygon that holds the lamp blocks nothing. */
+#define BEFORE_LAMP (1 - 1e-9)
+/* Cosine below which a lamp stands in a face's own plane, where N.L is 0 and not the rounding around it. */
+#define GRAZING 1e-12
 
 typedef struct face {
     size_t polygon;
@@ -319,8 +323,8 @@ static const face *visible(const oracle *o, const double origin[3], const double
     return best;
 }
 
-/* Does the face lie on the other's plane, corner by corner? Such a one casts no shadow on it. A face that only touches the
- * plane does, up to the line of contact. */
+/* Does the face lie on the other's plane, corner by corner? Of two on one plane neither casts a shadow on the other; rounding
+ * may let only the smaller lie on the larger one's. A face that only touches a plane does, up to the line of contact. */
 static int lies_on(const oracle *o, const face *a, const face *plane)
 {
     for (unsigned i = a->p.ring_start[0]; i < a->p.ring_start[1]; i++)
@@ -337,7 +341,8 @@ static void passes(const oracle *o, const lamp *l, const face *receiver, const d
     light[0] = light[1] = light[2] = 1;
     for (size_t i = 0; i < o->face_count; i++) {
         const face *a = &o->faces[i];
-        if (a == receiver || meet(a, point, to, far ? INFINITY : 1, at) < 0 || lies_on(o, a, receiver)) continue;
+        if (a == receiver || meet(a, point, to, far ? INFINITY : BEFORE_LAMP, at) < 0 || lies_on(o, a, receiver) ||
+            lies_on(o, receiver, a)) continue;
         for (int k = 0; k < 3; k++) light[k] *= a->m.transmission[k];
     }
 }
@@ -455,7 +460,7 @@ static void light_point(const oracle *o, const face *a, const double direction[3
         for (int k = 0; k < 3; k++) to[k] = far ? -l->direction[k] : l->position[k] - s->point[k];
         unit(to);
         /* light from behind the plane is the polygon's own shadow */
-        if (dot(plane, to) > 0 && -dot(to, l->direction) >= l->cone) passes(o, l, a, s->point, light);
+        if (dot(plane, to) > GRAZING && -dot(to, l->direction) >= l->cone) passes(o, l, a, s->point, light);
         shade(o, l, a, s->point, plane, colour);
         for (int k = 0; k < 3; k++) {
             s->rgb[k] += light[k] * colour[k];

@@ -65,7 +65,7 @@ static void random_plane(maker *m, double u[3], double v[3])
 
 const char *scene_kind_name(scene_kind kind)
 {
-    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "blob"};
+    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "blob"};
     return names[kind];
 }
 
@@ -340,6 +340,21 @@ static void glass(maker *m)
     soup(m, 4, 1.5, 0.6);
 }
 
+/* Rectangles and triangles with corners on whole numbers, mostly along the axes; equal planes and shared edges abound. */
+static void lattice(maker *m)
+{
+    for (int i = 0; i < 26; i++) {
+        double c[4][3], at[3], step[2][3] = {{0, 0, 0}, {0, 0, 0}};
+        int axis = pick(m, 3), corners = 3 + pick(m, 2), slanted = pick(m, 4) == 0, priority = pick(m, 3);
+        for (int k = 0; k < 3; k++) at[k] = pick(m, 5) - 2;
+        for (int k = 0; k < 2; k++) step[k][(axis + 1 + k) % 3] = 1 + pick(m, 2);
+        if (slanted) step[0][axis] = step[0][(axis + 1) % 3];
+        for (int j = 0; j < corners; j++)
+            for (int k = 0; k < 3; k++) c[j][k] = at[k] + (j == 1 || j == 2 ? step[0][k] : 0) + (j >= 2 ? step[1][k] : 0);
+        keep(m, add_polygon(m->scene, (const double(*)[3])c, (size_t)corners, any_material(m), priority));
+    }
+}
+
 static void blob(maker *m)
 {
     double centre[3] = {0, 0, 0};
@@ -381,6 +396,9 @@ static void add_light(maker *m, scene_kind kind, double share)
     if (kind == SCENE_ROOM && l.type == GNO_LIGHT_DIRECTIONAL) l.type = GNO_LIGHT_POINT;
     somewhere(m, size, l.position);
     if (pick(m, 3)) l.position[2] = l.position[2] * 0.2 + 3.5 * outside; /* from above, or in the midst of things */
+    /* a lamp on the floor makes a spot of light smaller than a pixel, which no bound of the tests is meant for */
+    if (outside > 0) l.position[2] = fmax(l.position[2], kind == SCENE_BOXES ? -0.1 : -1.1);
+    for (int k = 0; k < 3 && kind == SCENE_LATTICE; k++) l.position[k] = floor(2 * l.position[k]) + 0.5; /* on slanted planes at most */
     somewhere(m, 1, l.direction);
     l.direction[2] = -1.2;
     somewhere(m, 0.4, l.edge1);
@@ -394,6 +412,10 @@ static void add_light(maker *m, scene_kind kind, double share)
     if (dice == 0 || dice == 1) {
         l.falloff = GNO_FALLOFF_LINEAR;
         for (int k = 0; k < 3; k++) l.intensity[k] *= 6;
+    }
+    if (kind == SCENE_TORCH) {
+        l.type = GNO_LIGHT_POINT;
+        memcpy(l.position, gno_scene_camera(m->scene).eye, sizeof l.position);
     }
     if (dice == 2 && l.position[2] > 2) { /* far from everything, or it would burn a hole into the picture */
         l.falloff = GNO_FALLOFF_INVERSE_SQUARE;
@@ -413,6 +435,7 @@ static void add_camera(maker *m, scene_kind kind)
     c.fov = between(m, 25, 40);
     c.height = between(m, 3, 5);
     if (pick(m, 3) == 0) c.type = GNO_CAMERA_ORTHOGRAPHIC;
+    if (kind == SCENE_TORCH) c.type = GNO_CAMERA_PERSPECTIVE;
     if (kind == SCENE_ROOM || kind == SCENE_AROUND) {
         c.type = GNO_CAMERA_PERSPECTIVE;
         c.fov = between(m, 50, 110);
@@ -423,6 +446,16 @@ static void add_camera(maker *m, scene_kind kind)
     }
     if (pick(m, 4) == 0) somewhere(m, 0.5, c.up); /* a tilted camera */
     c.up[2] = 1;
+    if (kind == SCENE_LATTICE && pick(m, 2)) { /* straight along an axis, 6 or 8 pixels a unit */
+        int axis = pick(m, 3);
+        c.type = GNO_CAMERA_ORTHOGRAPHIC;
+        c.height = pick(m, 2) ? 6 : 8;
+        for (int k = 0; k < 3; k++) {
+            c.target[k] = 0;
+            c.eye[k] = k == axis ? 9 : 0;
+            c.up[k] = k == (axis + 1) % 3;
+        }
+    }
     keep(m, gno_scene_set_camera(m->scene, &c) == GNO_OK);
 }
 
@@ -441,7 +474,7 @@ gno_scene *random_scene(gno_context *context, scene_kind kind, unsigned seed, in
     keep(&m, gno_scene_set_ambient(m.scene, ambient) == GNO_OK);
     add_materials(&m, kind);
     add_camera(&m, kind);
-    int lights = 1 + pick(&m, 3);
+    int lights = kind == SCENE_TORCH ? 1 : 1 + pick(&m, 3);
     for (int i = 0; i < lights; i++) add_light(&m, kind, i ? 0.5 : 0.8);
     switch (kind) {
     case SCENE_SOUP: soup(&m, 25, 1.2, 1.4); break;
@@ -451,10 +484,94 @@ gno_scene *random_scene(gno_context *context, scene_kind kind, unsigned seed, in
     case SCENE_DETAILS: details(&m); break;
     case SCENE_ROOM: keep(&m, add_box(m.scene, a, b, 1, any_material(&m))); boxes(&m, 4, 1, -1.5); break;
     case SCENE_GLASS: glass(&m); break;
+    case SCENE_LATTICE: lattice(&m); break;
+    case SCENE_TORCH: floor_at(&m, -1.5, 4); soup(&m, 12, 1.2, 1.2); boxes(&m, 2, 1.5, -1.5); break;
     case SCENE_AROUND: soup(&m, 30, 1.5, 1.8); break;
     default: blob(&m); break;
     }
     if (m.ok) return m.scene;
     gno_scene_destroy(m.scene);
+    return NULL;
+}
+
+/* ---- moving ------------------------------------------------------------------------------------------------------- */
+
+static int copy_polygon(gno_scene *to, const gno_polygon *p, double scale, const double offset[3], double grid)
+{
+    double positions[256][3];
+    unsigned ring_start[64], first = p->ring_start[0], polygon_start[2] = {0, 0};
+    int order[256], own_normal[256];
+    gno_mesh_def d = gno_mesh_def_default();
+    size_t corners = p->ring_start[p->ring_count] - first, normal_count = 0;
+    if (corners > 256 || p->ring_count > 63) return 0;
+    for (unsigned r = 0; r <= p->ring_count; r++) ring_start[r] = p->ring_start[r] - first;
+    for (unsigned i = 0; i < corners; i++) {
+        for (int k = 0; k < 3; k++) {
+            double x = scale * p->positions[3 * (size_t)p->corner_vertex[first + i] + (size_t)k] + offset[k];
+            positions[i][k] = grid > 0 ? grid * floor(x / grid + 0.5) : x;
+        }
+        order[i] = (int)i;
+        own_normal[i] = p->corner_normal ? p->corner_normal[first + i] : -1;
+        if (own_normal[i] >= (int)normal_count) normal_count = (size_t)own_normal[i] + 1;
+    }
+    polygon_start[1] = (unsigned)p->ring_count;
+    d.vertex_count = d.corner_count = corners;
+    d.positions = positions[0];
+    d.normal_count = normal_count;
+    d.normals = normal_count ? p->normals : NULL;
+    d.corner_normal = normal_count ? own_normal : NULL;
+    d.corner_vertex = order;
+    d.polygon_count = 1;
+    d.polygon_start = polygon_start;
+    d.ring_count = p->ring_count;
+    d.ring_start = ring_start;
+    d.material = p->material;
+    d.shading = p->shading;
+    d.priority = p->priority;
+    return gno_scene_add_mesh(to, &d, NULL) == GNO_OK;
+}
+
+static int copy_light(gno_scene *to, gno_light l, double scale, const double offset[3])
+{
+    for (int k = 0; k < 3; k++) {
+        l.position[k] = scale * l.position[k] + offset[k];
+        l.edge1[k] *= scale;
+        l.edge2[k] *= scale;
+        if (l.falloff == GNO_FALLOFF_LINEAR) l.intensity[k] *= scale;
+        if (l.falloff == GNO_FALLOFF_INVERSE_SQUARE) l.intensity[k] *= scale * scale;
+    }
+    l.falloff_k *= scale;
+    return gno_scene_add_light(to, NULL, &l, NULL) == GNO_OK;
+}
+
+gno_scene *move_scene(gno_scene *from, double scale, const double offset[3], double grid)
+{
+    gno_scene *to = NULL;
+    gno_scene_counts counts = gno_scene_count(from);
+    gno_camera camera = gno_scene_camera(from);
+    gno_image_def image = gno_scene_image(from);
+    double ambient[3];
+    gno_scene_ambient(from, ambient);
+    for (int k = 0; k < 3; k++) {
+        camera.eye[k] = scale * camera.eye[k] + offset[k];
+        camera.target[k] = scale * camera.target[k] + offset[k];
+    }
+    camera.height *= scale;
+    int ok = gno_scene_create(gno_scene_context(from), &to) == GNO_OK && gno_scene_set_camera(to, &camera) == GNO_OK &&
+             gno_scene_set_image(to, &image) == GNO_OK && gno_scene_set_ambient(to, ambient) == GNO_OK;
+    for (size_t i = 1; i < counts.materials && ok; i++) { /* material 0 is in every scene */
+        gno_material m;
+        ok = gno_scene_material(from, (int)i, &m) == GNO_OK && gno_scene_add_material(to, &m, NULL) == GNO_OK;
+    }
+    for (size_t i = 0; i < counts.lights && ok; i++) {
+        gno_light l;
+        ok = gno_scene_light(from, (int)i, &l, NULL) == GNO_OK && copy_light(to, l, scale, offset);
+    }
+    for (size_t i = 0; i < counts.polygons && ok; i++) {
+        gno_polygon p;
+        ok = gno_scene_polygon(from, i, &p) == GNO_OK && copy_polygon(to, &p, scale, offset, grid);
+    }
+    if (ok) return to;
+    gno_scene_destroy(to);
     return NULL;
 }

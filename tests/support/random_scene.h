@@ -14,6 +14,8 @@ typedef enum scene_kind {
     SCENE_ROOM,    /* a closed room with eye, lamps and boxes inside */
     SCENE_GLASS,   /* transparent casters over a floor */
     SCENE_AROUND,  /* polygons in front of, behind and across the plane of the eye */
+    SCENE_LATTICE, /* everything on whole numbers: shared corners, common planes, edges through pixel corners */
+    SCENE_TORCH,   /* the light stands in the eye: no shadow can be seen */
     SCENE_BLOB,    /* a closed smooth mesh on a plane, Gouraud or Phong */
     SCENE_KINDS
 } scene_kind;
@@ -22,6 +24,10 @@ const char *scene_kind_name(scene_kind kind);
 
 /* The same seed makes the same scene. NULL when a call into the library fails. */
 gno_scene *random_scene(gno_context *context, scene_kind kind, unsigned seed, int width, int height);
+
+/* A copy made through the getters, magnified, moved, and its corners rounded to multiples of `grid` (0: not). Polygons keep
+ * their numbers. NULL when a call fails. */
+gno_scene *move_scene(gno_scene *from, double scale, const double offset[3], double grid);
 
 /* A sphere of 20 * 4^level triangles around (0,0,0), pushed in and out by waves of the given height; adds it to the scene with
  * normals of its own. Closed, star-shaped as long as `waves` is below some 0.3. Returns 0 on failure. */
