@@ -688,7 +688,7 @@ class Town:
 
     def build(self):
         ch = self.chance
-        self.walls.face([(-900, -900, 0), (900, -900, 0), (900, 900, 0), (-900, 900, 0)], "grass")
+        self.walls.face([(-600, -600, 0), (600, -600, 0), (600, 600, 0), (-600, 600, 0)], "grass")
         square = [(-19, -15, 0), (19, -15, 0), (19, 15, 0), (-19, 15, 0)]
         self.details.face(square, "paving")
         ways = [((-19, 0), (-46, -4), (-86, 2)), ((19, 0), (48, 5), (90, -2)), ((0, -15), (3, -45), (-2, -88)),
@@ -705,7 +705,7 @@ class Town:
                 self.row(x0, y0, x1, y1, -1)
         for way in ways:  # on into the country
             (x0, y0), (x1, y1) = way[-2:]
-            self.street((x1, y1), (x1 + 14 * (x1 - x0), y1 + 14 * (y1 - y0)), width=4)
+            self.street((x1, y1), (x1 + 9 * (x1 - x0), y1 + 9 * (y1 - y0)), width=4)
         self.church(3.0, 31)
         for x, y in ((-14, -11), (-14, 11), (14, -11), (14, 11)):
             self.tree(x, y, 4)

@@ -22,7 +22,7 @@
 #define FIELD 30.0
 #define MARGIN 0.1     /* of half the frame, on each side */
 #define GROUND 10.0    /* half the ground's side, in radii: reaches past the frame's upper corners */
-#define GROUND_GAP 1e-4 /* of the largest extent: over the engine's tolerance for coplanar, under what is seen */
+#define GROUND_GAP 5e-4 /* of the largest extent: over the engine's tolerance for coplanar, under what is seen */
 #define FACETS 2000    /* triangle meshes up to this size are shown as they are */
 #define CREASE 40.0
 
