@@ -11,6 +11,9 @@
  * corners that neighbours share comes to some 1e-7 of it. */
 #define PROBE_SLACK 1e-6
 
+/* In pixels: a shadow polygon that overlaps its receiver by less is taken to touch it. */
+#define OUTSIDE_SLACK 1e-7
+
 /* Everything about one (receiver, lamp) pair that its casters' tests share. */
 typedef struct pair {
     const gno_scene *scene;
@@ -21,9 +24,8 @@ typedef struct pair {
     double tolerance;
     gnoi_form x, y, w;   /* homogeneous picture coordinates of the shadow */
     double w_min;
-    int triangle;        /* the receiver has three corners: `edge` holds the planes through light and edges */
-    vec3 corner[3], edge[3];
-    double edge_slack[3];
+    int triangle;        /* the receiver has three corners */
+    vec3 corner[3];
 } pair;
 
 static gnoi_form shadow_form(const pair *p, const gnoi_form *f)
@@ -38,22 +40,6 @@ static gnoi_form shadow_form(const pair *p, const gnoi_form *f)
 static vec3 corner_position(const gno_scene *scene, uint32_t corner)
 {
     return v3_from(scene->positions[scene->prepared.corner_vertex[corner]]);
-}
-
-/* Planes through the light and the receiver's edges, the receiver on their positive side. */
-static void set_edge_planes(pair *p)
-{
-    const gnoi_lamp *lamp = p->lamp;
-    for (int k = 0; k < 3; k++)
-        p->corner[k] = corner_position(p->scene, p->receiver->poly->corner + (uint32_t)k);
-    for (int k = 0; k < 3; k++) {
-        vec3 a = p->corner[k], b = p->corner[k < 2 ? k + 1 : 0], c = p->corner[k > 0 ? k - 1 : 2];
-        vec3 n = v3_cross(v3_sub(b, a), lamp->directional ? lamp->to_light : v3_sub(lamp->position, a));
-        if (v3_dot(n, v3_sub(c, a)) < 0)
-            n = v3_scale(n, -1);
-        p->edge[k] = n;
-        p->edge_slack[k] = 1e-3 * p->tolerance * v3_length(n);
-    }
 }
 
 static int pair_make(pair *p, const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver)
@@ -74,8 +60,8 @@ static int pair_make(pair *p, const gno_scene *scene, const gnoi_view *view, con
     p->w = shadow_form(p, &view->w);
     p->w_min = view->orthographic ? -1 : view->near_depth * p->lamp_height;
     p->triangle = poly->corner_count == 3;
-    if (p->triangle)
-        set_edge_planes(p);
+    for (uint32_t k = 0; k < 3 && p->triangle; k++)
+        p->corner[k] = corner_position(scene, poly->corner + k);
     return 1;
 }
 
@@ -218,20 +204,28 @@ static int carries(const pair *p, const gnoi_poly *caster)
     return 1;
 }
 
-/* 1 when a plane through the light and an edge of the receiver has the whole caster on its outer side. */
-static int separated(const pair *p, const gnoi_poly *caster)
+/* 1 when the plane through the light and an edge of triangle a, a on its positive side, has triangle b on its other side. */
+static int parted_by_edge(const pair *p, const vec3 a[3], const vec3 b[3])
 {
     for (int k = 0; k < 3; k++) {
-        uint32_t i = 0;
-        for (; i < caster->corner_count; i++) {
-            vec3 q = v3_sub(corner_position(p->scene, caster->corner + i), p->corner[k]);
-            if (v3_dot(p->edge[k], q) > p->edge_slack[k])
-                break;
-        }
-        if (i == caster->corner_count)
+        vec3 from = a[k], to = a[k < 2 ? k + 1 : 0], third = a[k > 0 ? k - 1 : 2];
+        vec3 n = v3_cross(v3_sub(to, from), p->lamp->directional ? p->lamp->to_light : v3_sub(p->lamp->position, from));
+        double sign = v3_dot(n, v3_sub(third, from)) < 0 ? -1 : 1;
+        double slack = 1e-3 * p->tolerance * sqrt(v3_dot(n, n));
+        if (sign * v3_dot(n, v3_sub(b[0], from)) <= slack && sign * v3_dot(n, v3_sub(b[1], from)) <= slack &&
+            sign * v3_dot(n, v3_sub(b[2], from)) <= slack)
             return 1;
     }
     return 0;
+}
+
+/* 1 when receiver and caster, both triangles, do not overlap as the light sees them (separating axes). */
+static int separated(const pair *p, const gnoi_poly *caster)
+{
+    vec3 c[3];
+    for (uint32_t i = 0; i < 3; i++)
+        c[i] = corner_position(p->scene, caster->corner + i);
+    return parted_by_edge(p, p->corner, c) || parted_by_edge(p, c, p->corner);
 }
 
 static vec3 scene_point(const gnoi_hpoint *p) { return v3(p->x, p->y, p->w); }
@@ -341,43 +335,81 @@ static int add_ring_edges(ring_points *r, extent *e, gnoi_columns *columns)
     return 1;
 }
 
+typedef struct point2 {
+    double x, y;
+} point2;
+
+/* +1, -1 for a convex ring by its turn, 0 for one that is not convex. */
+static int convex_turn(const point2 *ring, size_t count)
+{
+    int positive = 0, negative = 0;
+    for (size_t i = 0; i < count; i++) {
+        point2 a = ring[i], b = ring[(i + 1) % count], c = ring[(i + 2) % count];
+        double turn = (b.x - a.x) * (c.y - b.y) - (b.y - a.y) * (c.x - b.x);
+        positive |= turn > 0;
+        negative |= turn < 0;
+    }
+    return positive - negative;
+}
+
+/* How the points lie to a convex ring: all inside or on it, all outside one of its edges (or reaching over it by no more than
+ * rounding), or otherwise. */
+typedef enum relation { ALL_INSIDE, ALL_OUTSIDE, MIXED } relation;
+
+static relation relate(const point2 *ring, size_t count, int turn, const point2 *points, size_t point_count)
+{
+    relation r = ALL_INSIDE;
+    for (size_t i = 0; i < count; i++) {
+        point2 a = ring[i], b = ring[i + 1 < count ? i + 1 : 0];
+        double ex = turn * (b.x - a.x), ey = turn * (b.y - a.y), slack = OUTSIDE_SLACK * (fabs(ex) + fabs(ey));
+        size_t out = 0;
+        for (size_t k = 0; k < point_count; k++) {
+            double s = ex * (points[k].y - a.y) - ey * (points[k].x - a.x);
+            out += s <= slack;
+            if (s < 0)
+                r = MIXED;
+        }
+        if (out == point_count)
+            return ALL_OUTSIDE;
+    }
+    return r;
+}
+
 /* The receiver's region as picture points: its own corners when it lies wholly inside. */
-static int region_points(const pair *p, const gnoi_view *view, double points[4][2])
+static size_t region_points(const pair *p, const gnoi_view *view, point2 points[4])
 {
     const gnoi_receiver *r = p->receiver;
     if (r->whole && p->triangle) {
         for (int i = 0; i < 3; i++) {
             double w = gnoi_form_at(&view->w, p->corner[i]);
-            points[i][0] = gnoi_form_at(&view->x, p->corner[i]) / w;
-            points[i][1] = gnoi_form_at(&view->y, p->corner[i]) / w;
+            points[i].x = gnoi_form_at(&view->x, p->corner[i]) / w;
+            points[i].y = gnoi_form_at(&view->y, p->corner[i]) / w;
         }
         return 3;
     }
     for (int i = 0; i < 4; i++) {
-        points[i][0] = i == 1 || i == 2 ? r->x1 : r->x0;
-        points[i][1] = i >= 2 ? r->y1 : r->y0;
+        points[i].x = i == 1 || i == 2 ? r->x1 : r->x0;
+        points[i].y = i >= 2 ? r->y1 : r->y0;
     }
     return 4;
 }
 
-/* 1 when the convex picture polygon holds all the points; 0 when it does not or is not convex. */
-static int convex_holds(const gnoi_hpoint *ring, size_t count, double points[4][2], int point_count)
+/* How a convex shadow polygon lies to the receiver's region. */
+static relation relate_shadow(const gnoi_hpoint *ring, size_t count, const point2 *region, size_t region_count)
 {
-    int positive = 0, negative = 0;
+    point2 shadow[GNOI_FRAME_POINTS];
+    int turn;
+    if (count < 3 || count > GNOI_FRAME_POINTS)
+        return MIXED;
     for (size_t i = 0; i < count; i++) {
-        const gnoi_hpoint *a = &ring[i], *b = &ring[i + 1 < count ? i + 1 : 0], *c = &ring[(i + 2) % count];
-        double turn = (b->x - a->x) * (c->y - b->y) - (b->y - a->y) * (c->x - b->x);
-        positive |= turn > 0;
-        negative |= turn < 0;
-        for (int k = 0; k < point_count; k++) {
-            double s = (b->x - a->x) * (points[k][1] - a->y) - (b->y - a->y) * (points[k][0] - a->x);
-            positive |= s > 0;
-            negative |= s < 0;
-        }
-        if (positive && negative)
-            return 0;
+        shadow[i].x = ring[i].x;
+        shadow[i].y = ring[i].y;
     }
-    return positive != negative;
+    turn = convex_turn(region, region_count);
+    if (turn && relate(region, region_count, turn, shadow, count) == ALL_OUTSIDE)
+        return ALL_OUTSIDE;
+    turn = convex_turn(shadow, count);
+    return turn ? relate(shadow, count, turn, region, region_count) : MIXED;
 }
 
 typedef enum found { FOUND_NOTHING, FOUND_PART, FOUND_ALL, FOUND_NO_MEMORY } found;
@@ -393,7 +425,7 @@ static found try_caster(const pair *p, const gnoi_view *view, uint32_t index, gn
     size_t first_edge = columns->edge_count, room = 4 * (size_t)caster->corner_count + 16;
     ring_points r = {NULL, NULL, 0};
     gnoi_caster *c;
-    if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && region->whole && separated(p, caster)) || carries(p, caster))
+    if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && caster->corner_count == 3 && separated(p, caster)) || carries(p, caster))
         return FOUND_NOTHING;
     if (!gnoi_reserve(columns->context, (void **)&columns->points, &columns->point_capacity, 2 * room, sizeof *columns->points) ||
         !gnoi_reserve(columns->context, (void **)&columns->casters, &columns->caster_capacity, columns->caster_count + 1,
@@ -411,12 +443,12 @@ static found try_caster(const pair *p, const gnoi_view *view, uint32_t index, gn
         columns->edge_count = first_edge;
         return FOUND_NOTHING;
     }
-    if (caster->opaque && caster->ring_count == 1 && r.count >= 3 && r.count <= GNOI_FRAME_POINTS) {
-        double points[4][2];
-        int n = region_points(p, view, points);
-        if (convex_holds(r.now, r.count, points, n)) {
+    if (caster->ring_count == 1) {
+        point2 points[4];
+        relation how = relate_shadow(r.now, r.count, points, region_points(p, view, points));
+        if (how == ALL_OUTSIDE || (how == ALL_INSIDE && caster->opaque)) {
             columns->edge_count = first_edge;
-            return FOUND_ALL;
+            return how == ALL_OUTSIDE ? FOUND_NOTHING : FOUND_ALL;
         }
     }
     c = &columns->casters[columns->caster_count++];
