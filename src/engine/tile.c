@@ -147,6 +147,8 @@ static void write_pixels(const gnoi_tile *tile)
 
 static void make_rows(gnoi_tile *tile)
 {
+    if (!tile->failed)
+        gnoi_tile_light(tile);
     for (int row = 0; row < tile->height + 2 && !tile->failed; row++)
         gnoi_tile_row(tile, row);
     gnoi_tile_flush(tile);

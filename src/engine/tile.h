@@ -2,6 +2,7 @@
  *
  * Place in the data flow, each step a file of its own:
  *   bins -> tile_scan.c: polygons of the tile, nearest first, as segments into the visible lists of the tile's lines
+ *        -> tile_light.c: a column of each lamp's shadow matrix for every surface seen
  *        -> tile_rows.c: visible pieces of a pixel row -> coverage by surface and pixel, split by shadow polygons
  *        -> tile_shade.c: one sample for each pixel and surface -> lighting -> the tile's picture
  *        -> tile.c: which pixels vary and get more lines; the tile's part of the picture
@@ -104,6 +105,9 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index);
 /* tile_scan.c: prepares the order of the bin's polygons; draws them into the lines. */
 void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count);
 void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
+
+/* tile_light.c: finds the columns of the surfaces seen on the tile's lines. */
+void gnoi_tile_light(gnoi_tile *tile);
 
 /* tile_rows.c: makes samples of every visible piece of row `row` (apron included). */
 void gnoi_tile_row(gnoi_tile *tile, int row);

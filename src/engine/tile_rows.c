@@ -62,27 +62,6 @@ static void add_colour(float colour[3][GNOI_TILE_W], float x0, float x1, const d
     }
 }
 
-static gnoi_column *slot_columns(gnoi_tile *tile, gnoi_slot *slot)
-{
-    int lamps = tile->job->lamp_count;
-    if (slot->first_column == GNOI_NONE) {
-        if (!gnoi_reserve(tile->lines.context, (void **)&tile->columns, &tile->column_capacity, tile->column_count + (size_t)lamps + 1,
-                          sizeof *tile->columns)) {
-            tile->failed = 1;
-            return NULL;
-        }
-        slot->first_column = (uint32_t)tile->column_count;
-        tile->column_count += (size_t)lamps;
-        for (int j = 0; j < lamps; j++) {
-            gnoi_column *column = &tile->columns[slot->first_column + (uint32_t)j];
-            if (!gnoi_column_find(tile->job->scene, &tile->job->view, &tile->job->lamps[j], &tile->job->trees[j], &slot->receiver,
-                                  &tile->store, column))
-                tile->failed = 1;
-        }
-    }
-    return &tile->columns[slot->first_column];
-}
-
 /* Splits one piece by the column's shadow polygons and adds what is lit. */
 static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, const gnoi_piece *piece, float dy,
                         int line)
@@ -170,9 +149,7 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
         first = a < first ? a : first;
         last = b > last ? b : last;
     }
-    columns = slot_columns(tile, slot);
-    if (tile->failed)
-        return;
+    columns = &tile->columns[slot->first_column];
     cells_clear(&tile->cells, first, last);
     for (int j = 0; j < lamps; j++)
         if (columns[j].state == GNOI_COLUMN_SPLIT)

@@ -14,6 +14,10 @@
 /* In pixels: a shadow polygon that overlaps its receiver by less is taken to touch it. */
 #define OUTSIDE_SLACK 1e-7
 
+/* So many receivers wait for each other, while the box around them is no larger than so many times the newest one's. */
+#define REQUESTS 64
+#define REQUEST_SPREAD 16.0f
+
 /* Everything about one (receiver, lamp) pair that its casters' tests share. */
 typedef struct pair {
     const gno_scene *scene;
@@ -571,29 +575,20 @@ static void drop_repeats(gnoi_list *list)
     list->count = n;
 }
 
-int gnoi_column_find(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_tree *tree,
-                     const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column)
-{
+struct gnoi_request {
     pair p;
-    gnoi_lbox boxes[6];
+    gnoi_column *column;
+    gnoi_lbox box;
     gnoi_probe probe;
-    int n, probed;
-    columns->asked++;
+};
+
+/* Tests all candidates in columns->found. */
+static int settle(const pair *p, const gnoi_view *view, gnoi_columns *columns, gnoi_column *column)
+{
     column->caster = (uint32_t)columns->caster_count;
-    column->caster_count = 0;
-    column->state = GNOI_COLUMN_DARK;
-    if (!pair_make(&p, scene, view, lamp, receiver))
-        return 1;
-    n = region_boxes(&p, view, &tree->frame, boxes, &probe, &probed);
-    columns->found.count = 0;
-    for (int i = 0; i < n; i++)
-        if (!gnoi_tree_query(columns->context, tree, &boxes[i], probed ? &probe : NULL, &columns->found))
-            return 0;
-    if (n > 1)
-        drop_repeats(&columns->found);
     for (size_t i = 0; i < columns->found.count; i++) {
         uint32_t c = columns->found.items[i];
-        found f = c == receiver->index ? FOUND_NOTHING : try_caster(&p, view, c, columns);
+        found f = c == p->receiver->index ? FOUND_NOTHING : try_caster(p, view, c, columns);
         if (f == FOUND_NO_MEMORY)
             return 0;
         if (f == FOUND_ALL) {
@@ -605,8 +600,86 @@ int gnoi_column_find(const gno_scene *scene, const gnoi_view *view, const gnoi_l
     }
     column->caster_count = (uint32_t)(columns->caster_count - column->caster);
     columns->ones += column->caster_count;
-    column->state = column->caster_count || lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
+    column->state = column->caster_count || p->lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
     return 1;
+}
+
+int gnoi_columns_finish(const gnoi_view *view, const gnoi_tree *tree, gnoi_columns *columns)
+{
+    if (columns->request_count == 0)
+        return 1;
+    if (!gnoi_tree_gather(columns->context, tree, &columns->request_box, &columns->front))
+        return 0;
+    for (size_t i = 0; i < columns->request_count; i++) {
+        const struct gnoi_request *r = &columns->requests[i];
+        columns->found.count = 0;
+        if (!gnoi_tree_query(columns->context, tree, &columns->front, &r->box, &r->probe, &columns->found) ||
+            !settle(&r->p, view, columns, r->column))
+            return 0;
+    }
+    columns->request_count = 0;
+    return 1;
+}
+
+static float box_side(const gnoi_lbox *b) { return max_f(b->u1 - b->u0, b->v1 - b->v0); }
+
+static gnoi_lbox box_union(const gnoi_lbox *a, const gnoi_lbox *b)
+{
+    gnoi_lbox r;
+    r.u0 = min_f(a->u0, b->u0);
+    r.u1 = max_f(a->u1, b->u1);
+    r.v0 = min_f(a->v0, b->v0);
+    r.v1 = max_f(a->v1, b->v1);
+    r.z0 = min_f(a->z0, b->z0);
+    r.z1 = max_f(a->z1, b->z1);
+    return r;
+}
+
+/* Lets a receiver wait with its neighbours, after sending off those that it is no neighbour of. */
+static int wait_with_others(const pair *p, const gnoi_view *view, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe,
+                            gnoi_columns *columns, gnoi_column *column)
+{
+    struct gnoi_request *r;
+    gnoi_lbox all = columns->request_count ? box_union(&columns->request_box, box) : *box;
+    if (columns->request_count == REQUESTS || (columns->request_count && box_side(&all) > REQUEST_SPREAD * box_side(box))) {
+        if (!gnoi_columns_finish(view, tree, columns))
+            return 0;
+        all = *box;
+    }
+    if (!gnoi_reserve(columns->context, (void **)&columns->requests, &columns->request_capacity, REQUESTS, sizeof *columns->requests))
+        return 0;
+    r = &columns->requests[columns->request_count++];
+    r->p = *p;
+    r->column = column;
+    r->box = *box;
+    r->probe = *probe;
+    columns->request_box = all;
+    return 1;
+}
+
+int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_tree *tree,
+                     const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column)
+{
+    pair p;
+    gnoi_lbox boxes[6];
+    gnoi_probe probe;
+    int n, probed;
+    columns->asked++;
+    column->caster = 0;
+    column->caster_count = 0;
+    column->state = GNOI_COLUMN_DARK;
+    if (!pair_make(&p, scene, view, lamp, receiver))
+        return 1;
+    n = region_boxes(&p, view, &tree->frame, boxes, &probe, &probed);
+    if (n == 1 && probed)
+        return wait_with_others(&p, view, tree, &boxes[0], &probe, columns, column);
+    columns->found.count = 0;
+    for (int i = 0; i < n; i++)
+        if (!gnoi_tree_query(columns->context, tree, NULL, &boxes[i], NULL, &columns->found))
+            return 0;
+    if (n > 1)
+        drop_repeats(&columns->found);
+    return settle(&p, view, columns, column);
 }
 
 /* Where line y crosses the caster, in pairs (even-odd filling). */
@@ -652,6 +725,7 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
 
 void gnoi_columns_reset(gnoi_columns *columns)
 {
+    columns->request_count = 0;
     columns->caster_count = 0;
     columns->edge_count = 0;
 }
@@ -661,6 +735,8 @@ void gnoi_columns_free(gnoi_columns *columns)
     gnoi_free(columns->context, columns->casters, columns->caster_capacity, sizeof *columns->casters);
     gnoi_free(columns->context, columns->edges, columns->edge_capacity, sizeof *columns->edges);
     gnoi_free(columns->context, columns->found.items, columns->found.capacity, sizeof *columns->found.items);
+    gnoi_free(columns->context, columns->requests, columns->request_capacity, sizeof *columns->requests);
+    gnoi_free(columns->context, columns->front.nodes.items, columns->front.nodes.capacity, sizeof *columns->front.nodes.items);
     gnoi_free(columns->context, columns->points, columns->point_capacity, sizeof *columns->points);
     gnoi_free(columns->context, columns->intervals, columns->interval_capacity, sizeof *columns->intervals);
     gnoi_free(columns->context, columns->crossings, columns->crossing_capacity, sizeof *columns->crossings);

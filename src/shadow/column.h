@@ -42,6 +42,8 @@ typedef struct gnoi_column {
     uint32_t caster, caster_count; /* into gnoi_columns.casters */
 } gnoi_column;
 
+struct gnoi_request; /* a receiver waiting for its neighbours, so that they walk the tree together */
+
 /* Storage of all columns of one tile, and scratch; one for each worker. */
 typedef struct gnoi_columns {
     gno_context *context;
@@ -56,6 +58,10 @@ typedef struct gnoi_columns {
     gno_shadow_interval *intervals;  /* of the line asked for last */
     size_t crossing_capacity;
     double *crossings;
+    struct gnoi_request *requests;   /* request_capacity of them once made; request_count wait */
+    size_t request_count, request_capacity;
+    gnoi_lbox request_box;           /* holds all that wait */
+    gnoi_tree_front front;
     double asked, ones, full;        /* statistics */
 } gnoi_columns;
 
@@ -70,9 +76,12 @@ typedef struct gnoi_receiver {
     int whole;                /* the polygon lies wholly inside the region, before the near plane */
 } gnoi_receiver;
 
-/* Finds the column of `receiver` for `lamp`. Returns 0 when memory fails. */
-int gnoi_column_find(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_tree *tree,
+/* Asks for the column of `receiver` for `lamp`; it is valid after gnoi_columns_finish. Receivers near each other in the picture
+ * should follow one another, all of one lamp between two calls of finish; receiver and column must stay in place until then.
+ * Both return 0 when memory fails. */
+int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_tree *tree,
                      const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column);
+int gnoi_columns_finish(const gnoi_view *view, const gnoi_tree *tree, gnoi_columns *columns);
 
 /* Collects in columns->intervals where the column's shadow polygons and, for a spot, the dark outside of its cone meet line y
  * between xa and xb (intervals may reach beyond). Returns 0 when memory fails. */

@@ -391,10 +391,15 @@ static int list_room(gno_context *context, gnoi_list *list, size_t more)
            gnoi_reserve(context, (void **)&list->items, &list->capacity, list->count + more, sizeof *list->items);
 }
 
-int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_list *found)
+/* Queries that share a front start at nodes of this level: 64 entries each. */
+#define FRONT_LEVEL 1
+
+int gnoi_tree_gather(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, gnoi_tree_front *front)
 {
     struct { int level; uint32_t node; } stack[GNOI_TREE_FAN * GNOI_TREE_LEVELS];
     int top = 0;
+    front->nodes.count = 0;
+    front->level = tree->levels - 1 < FRONT_LEVEL ? tree->levels - 1 : FRONT_LEVEL;
     if (tree->levels == 0)
         return 1;
     stack[top].level = tree->levels - 1;
@@ -402,22 +407,47 @@ int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox
     while (top > 0) {
         int level = stack[--top].level;
         uint32_t node = stack[top].node;
-        unsigned mask = meet_mask(&tree->nodes[tree->level_first[level] + node], box);
-        if (level == 0 && mask) {
-            if (probe)
-                mask &= probe_mask(&tree->leaves[node], probe);
-            if (!list_room(context, found, GNOI_TREE_FAN))
+        if (level == front->level) {
+            if (!list_room(context, &front->nodes, 1))
                 return 0;
+            front->nodes.items[front->nodes.count++] = node;
+            continue;
         }
-        for (; mask; mask &= mask - 1) {
-            uint32_t child = node * GNOI_TREE_FAN + lowest_bit(mask);
-            if (level == 0) {
-                found->items[found->count++] = tree->caster[child];
-            } else {
-                stack[top].level = level - 1;
-                stack[top++].node = child;
-            }
+        for (unsigned mask = meet_mask(&tree->nodes[tree->level_first[level] + node], box); mask; mask &= mask - 1) {
+            stack[top].level = level - 1;
+            stack[top++].node = node * GNOI_TREE_FAN + lowest_bit(mask);
         }
     }
+    return 1;
+}
+
+static int query_node(gno_context *context, const gnoi_tree *tree, int level, uint32_t node, const gnoi_lbox *box,
+                      const gnoi_probe *probe, gnoi_list *found)
+{
+    unsigned mask = meet_mask(&tree->nodes[tree->level_first[level] + node], box);
+    if (level == 0 && mask) {
+        if (probe)
+            mask &= probe_mask(&tree->leaves[node], probe);
+        if (!list_room(context, found, GNOI_TREE_FAN))
+            return 0;
+    }
+    for (; mask; mask &= mask - 1) {
+        uint32_t child = node * GNOI_TREE_FAN + lowest_bit(mask);
+        if (level == 0)
+            found->items[found->count++] = tree->caster[child];
+        else if (!query_node(context, tree, level - 1, child, box, probe, found))
+            return 0;
+    }
+    return 1;
+}
+
+int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
+                    const gnoi_probe *probe, gnoi_list *found)
+{
+    if (!front)
+        return tree->levels == 0 || query_node(context, tree, tree->levels - 1, 0, box, probe, found);
+    for (size_t i = 0; i < front->nodes.count; i++)
+        if (!query_node(context, tree, front->level, front->nodes.items[i], box, probe, found))
+            return 0;
     return 1;
 }

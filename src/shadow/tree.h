@@ -59,9 +59,20 @@ typedef struct gnoi_list {
     uint32_t *items;
 } gnoi_list;
 
+/* Nodes of one level that hold every caster whose box may meet a given box: where queries for receivers near each other begin. */
+typedef struct gnoi_tree_front {
+    int level;
+    gnoi_list nodes;
+} gnoi_tree_front;
+
+/* Sets the front of everything that meets `box`. Returns 0 when memory fails. */
+int gnoi_tree_gather(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, gnoi_tree_front *front);
+
 /* Appends every caster whose box meets `box`, does not begin behind its farthest depth and is not ruled out by the probe (NULL:
- * none); boxes on several faces of a six-face frame may each find the same caster. Returns 0 when memory fails. */
-int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_list *found);
+ * none); boxes on several faces of a six-face frame may each find the same caster. front: one gathered for a box that holds this
+ * one, or NULL. Returns 0 when memory fails. */
+int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
+                    const gnoi_probe *probe, gnoi_list *found);
 
 /* Up to 8 points whose hull contains the polygon: its outer corners, or a rectangle in its plane. Returns their number. */
 int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS]);

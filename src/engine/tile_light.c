@@ -1,0 +1,76 @@
+/* tile_light.c -- the columns of every surface seen in a tile, asked for lamp by lamp and in picture order, so that neighbours
+ * walk the caster tree together: see tile.h.
+ */
+#include "engine/tile.h"
+
+/* Side of the blocks by which surfaces are put in order, in pixels. */
+#define BLOCK 8
+#define BLOCKS (((GNOI_TILE_W + BLOCK - 1) / BLOCK) * ((GNOI_TILE_ROWS + BLOCK - 1) / BLOCK))
+
+static int reserve(gnoi_tile *tile)
+{
+    gno_context *context = tile->lines.context;
+    size_t lamps = (size_t)tile->job->lamp_count;
+    return gnoi_reserve(context, (void **)&tile->touched, &tile->touched_capacity, 2 * tile->slot_count + 1, sizeof *tile->touched) &&
+           gnoi_reserve(context, (void **)&tile->columns, &tile->column_capacity, tile->column_count + tile->slot_count * lamps + 1,
+                        sizeof *tile->columns);
+}
+
+/* Lists the slots with visible pieces whose columns are not known yet, and gives them room for columns. */
+static size_t list_slots(gnoi_tile *tile)
+{
+    size_t count = 0;
+    for (size_t line = 0; line < tile->lines.line_count; line++)
+        for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
+            gnoi_slot *slot = &tile->slots[tile->lines.pieces[p].slot];
+            if (slot->first_column != GNOI_NONE)
+                continue;
+            slot->first_column = (uint32_t)tile->column_count;
+            tile->column_count += (size_t)tile->job->lamp_count;
+            tile->touched[count++] = tile->lines.pieces[p].slot;
+        }
+    return count;
+}
+
+static int block_of(const gnoi_tile *tile, uint32_t slot)
+{
+    const gnoi_receiver *r = &tile->slots[slot].receiver;
+    int x = (int)(r->x0 - tile->x0) / BLOCK, y = (int)(r->y0 - tile->y0 + 1) / BLOCK, across = GNOI_TILE_W / BLOCK;
+    x = x < across ? x : across - 1;
+    return y * across + (y & 1 ? across - 1 - x : x);
+}
+
+/* Puts touched[0..count) in block order, into touched[slot_count..]; returns where. */
+static const uint32_t *order_by_block(gnoi_tile *tile, size_t count)
+{
+    uint32_t *ordered = tile->touched + tile->slot_count;
+    size_t start[BLOCKS + 1] = {0};
+    for (size_t i = 0; i < count; i++)
+        start[block_of(tile, tile->touched[i]) + 1]++;
+    for (int b = 0; b < BLOCKS; b++)
+        start[b + 1] += start[b];
+    for (size_t i = 0; i < count; i++)
+        ordered[start[block_of(tile, tile->touched[i])]++] = tile->touched[i];
+    return ordered;
+}
+
+void gnoi_tile_light(gnoi_tile *tile)
+{
+    const gnoi_frame_job *job = tile->job;
+    const uint32_t *ordered;
+    size_t count;
+    if (!reserve(tile)) {
+        tile->failed = 1;
+        return;
+    }
+    count = list_slots(tile);
+    ordered = order_by_block(tile, count);
+    for (int j = 0; j < job->lamp_count && !tile->failed; j++) {
+        for (size_t i = 0; i < count && !tile->failed; i++) {
+            gnoi_slot *slot = &tile->slots[ordered[i]];
+            tile->failed |= !gnoi_columns_ask(job->scene, &job->view, &job->lamps[j], &job->trees[j], &slot->receiver, &tile->store,
+                                              &tile->columns[slot->first_column + (uint32_t)j]);
+        }
+        tile->failed |= !gnoi_columns_finish(&job->view, &job->trees[j], &tile->store);
+    }
+}
