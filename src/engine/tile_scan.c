@@ -51,7 +51,7 @@ static double plane_tolerance(const gno_scene *scene, const gnoi_poly *poly)
     const gnoi_prepared *prep = &scene->prepared;
     double reach = 0, far_away = 0;
     for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
-        const double *p = scene->positions[prep->corner_vertex[i]];
+        const double *p = prep->positions[prep->corner_vertex[i]];
         for (int k = 0; k < 3; k++) {
             double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
             reach = r > reach ? r : reach;
@@ -117,7 +117,7 @@ static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
     depth->f0 = r->nearness.f0 + r->nearness.fx * tile->x0;
     depth->tolerance_z = job->view.orthographic ? 0 : r->tolerance / fabs(side);
     depth->tolerance_0 = job->view.orthographic ? r->tolerance / fabs(side) : 0;
-    depth->index = index;
+    depth->index = poly->source;
     depth->priority = poly->priority;
     set_depth_bounds(tile, &r->nearness, depth);
     return (uint32_t)tile->slot_count++;

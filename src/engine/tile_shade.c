@@ -44,11 +44,11 @@ static vec3 centroid(const gno_scene *scene, const gnoi_poly *poly)
 {
     const gnoi_prepared *prep = &scene->prepared;
     uint32_t first = prep->ring_corner[poly->ring], end = prep->ring_corner[poly->ring + 1];
-    vec3 origin = v3_from(scene->positions[prep->corner_vertex[first]]), sum = v3(0, 0, 0), n = v3_from(poly->n);
+    vec3 origin = v3_from(prep->positions[prep->corner_vertex[first]]), sum = v3(0, 0, 0), n = v3_from(poly->n);
     double area = 0;
     for (uint32_t i = first + 1; i + 1 < end; i++) {
-        vec3 a = v3_sub(v3_from(scene->positions[prep->corner_vertex[i]]), origin);
-        vec3 b = v3_sub(v3_from(scene->positions[prep->corner_vertex[i + 1]]), origin);
+        vec3 a = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
+        vec3 b = v3_sub(v3_from(prep->positions[prep->corner_vertex[i + 1]]), origin);
         double t = v3_dot(v3_cross(a, b), n);
         sum = v3_mad(sum, v3_add(a, b), t / 3);
         area += t;
@@ -104,7 +104,7 @@ static double (*seek_intensities(gnoi_tile *tile, gnoi_slot *slot, double x, dou
         gnoi_interp_seek(&slot->interp, job->scene, &job->view, poly, x, y);
         for (size_t i = 0; i < 3 && slot->intensity_corner != slot->interp.triangle; i++) {
             uint32_t corner = slot->interp.corner[i];
-            vec3 p = v3_from(job->scene->positions[job->scene->prepared.corner_vertex[corner]]);
+            vec3 p = v3_from(job->scene->prepared.positions[job->scene->prepared.corner_vertex[corner]]);
             set_intensity(job, slot, p, corner_normal(job, slot, corner), &tile->intensities[slot->first_intensity + i * lamps]);
         }
         slot->intensity_corner = slot->interp.triangle;

@@ -28,7 +28,7 @@ static gno_status project_chunk(void *user, int worker, size_t piece)
     size_t end = (piece + 1) * VERTEX_CHUNK < j->bins->vertex_count ? (piece + 1) * VERTEX_CHUNK : j->bins->vertex_count;
     (void)worker;
     for (size_t i = piece * VERTEX_CHUNK; i < end; i++) {
-        vec3 p = v3_from(j->scene->positions[i]);
+        vec3 p = v3_from(j->scene->prepared.positions[i]);
         gnoi_vertex *v = &j->bins->vertices[i];
         double depth = gnoi_form_at(&view->depth, p), k = view->orthographic ? 1 : 1 / depth;
         if (!(depth > view->near_depth)) {
@@ -164,7 +164,7 @@ gno_status gnoi_bins_build(const gno_scene *scene, const gnoi_view *view, int li
     j.lines = lines;
     bins->tiles_x = (view->width + GNOI_TILE_W - 1) / GNOI_TILE_W;
     bins->tiles_y = (view->height + GNOI_TILE_H - 1) / GNOI_TILE_H;
-    bins->vertex_count = scene->vertex_count;
+    bins->vertex_count = scene->prepared.vertex_count;
     j.tile_count = (size_t)bins->tiles_x * (size_t)bins->tiles_y;
     j.chunk_count = (polys + CHUNK - 1) / CHUNK;
     threads = gnoi_thread_count(threads);

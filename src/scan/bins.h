@@ -22,7 +22,7 @@ typedef struct gnoi_vertex {
 
 typedef struct gnoi_bins {
     int tiles_x, tiles_y;
-    gnoi_vertex *vertices;  /* one for each scene vertex */
+    gnoi_vertex *vertices;  /* one for each prepared vertex */
     size_t vertex_count;
     uint32_t *start;        /* tiles+1 offsets into items */
     uint32_t *items;

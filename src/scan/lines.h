@@ -21,7 +21,7 @@
 typedef struct gnoi_depth {
     double fx, fy, f0;           /* nearness = fx x + fy y + f0, x in line units, y in picture rows */
     double tolerance_z, tolerance_0; /* nearness within tolerance_z * nearness + tolerance_0 is "on" the surface */
-    uint32_t index;              /* polygon number */
+    uint32_t index;              /* the scene's polygon number */
     int32_t priority;
     float nearest, farthest;     /* bounds of nearness within the tile */
 } gnoi_depth;

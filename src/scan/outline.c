@@ -48,7 +48,7 @@ static size_t cut_ring(const gno_scene *scene, const gnoi_view *view, uint32_t f
     size_t n = end - first;
     gnoi_hpoint *swap;
     for (size_t i = 0; i < n; i++) {
-        vec3 p = v3_from(scene->positions[scene->prepared.corner_vertex[first + i]]);
+        vec3 p = v3_from(scene->prepared.positions[scene->prepared.corner_vertex[first + i]]);
         a[i].x = p.x;
         a[i].y = p.y;
         a[i].w = p.z;

@@ -30,6 +30,7 @@ void gnoi_prepared_free(gno_context *context, gnoi_prepared *prepared)
     gnoi_free(context, prepared->ring_corner, prepared->ring_capacity, sizeof *prepared->ring_corner);
     gnoi_free(context, prepared->corner_vertex, prepared->corner_capacity, sizeof *prepared->corner_vertex);
     gnoi_free(context, prepared->corner_normal, prepared->corner_capacity, sizeof *prepared->corner_normal);
+    gnoi_free(context, prepared->positions, prepared->vertex_capacity, sizeof *prepared->positions);
     gnoi_free(context, prepared->normals, prepared->normal_capacity, sizeof *prepared->normals);
     gnoi_free(context, prepared->triangles, prepared->triangle_capacity, sizeof *prepared->triangles);
     memset(prepared, 0, sizeof *prepared);
@@ -315,6 +316,9 @@ static gno_status fill_prepared(gno_scene *scene, int threads, unsigned char *ki
     }
     out->problems.degenerate = measures.empty;
     out->problems.non_planar = measures.split;
+    if (status == GNO_OK && gnoi_order_polygons(scene) != GNO_OK) {
+        status = out_of_memory(scene);
+    }
     return status;
 }
 

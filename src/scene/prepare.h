@@ -1,7 +1,9 @@
 /* prepare.h -- the steps of preparing a scene, in the order they run.
  *
  * Place in the data flow: gno_scene -> measure.c (planes, what each polygon is) -> prepare.c (prepared polygons, rings,
- * corners, triangulations) -> normals.c (vertex normals of smooth polygons) -> gnoi_prepared.
+ * corners, triangulations; corner_vertex still indexes the scene's positions) -> normals.c (vertex normals of smooth polygons)
+ * -> order.c (polygons, vertices and normals numbered as they lie in space; corner_vertex indexes prepared.positions)
+ * -> gnoi_prepared.
  */
 #ifndef GNOI_SCENE_PREPARE_H
 #define GNOI_SCENE_PREPARE_H
@@ -32,6 +34,9 @@ int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3]
 /* Turns prepared.corner_normal from indices into the scene's normals into indices into prepared.normals, made here:
  * the file's normals as unit vectors, averages, and planes' normals where neither serves. */
 gno_status gnoi_prepare_normals(gno_scene *scene);
+
+/* Renumbers everything in scene->prepared by place and fills prepared.positions. */
+gno_status gnoi_order_polygons(gno_scene *scene);
 
 static inline int gnoi_is_smooth(const gnoi_poly *poly)
 {

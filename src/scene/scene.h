@@ -53,7 +53,9 @@ typedef struct gnoi_prepared {
     size_t ring_count, ring_capacity;
     uint32_t *ring_corner; /* ring_count+1 offsets into corner arrays; ring_capacity counts its elements */
     size_t corner_count, corner_capacity;
-    uint32_t *corner_vertex;    /* index into scene positions */
+    uint32_t *corner_vertex;    /* index into positions */
+    size_t vertex_count, vertex_capacity;
+    double (*positions)[3];     /* the scene's, those that corners use, in the order of first use */
     uint32_t *corner_normal;    /* index into normals, GNOI_NONE where the polygon is not smooth (NULL: no smooth polygon at all) */
     size_t normal_count, normal_capacity;
     float (*normals)[3];        /* unit */

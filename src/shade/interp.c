@@ -3,7 +3,7 @@
 
 static vec3 homogeneous(const gno_scene *scene, const gnoi_view *view, uint32_t corner)
 {
-    vec3 p = v3_from(scene->positions[scene->prepared.corner_vertex[corner]]);
+    vec3 p = v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]);
     return v3(gnoi_form_at(&view->x, p), gnoi_form_at(&view->y, p), gnoi_form_at(&view->w, p));
 }
 

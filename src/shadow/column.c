@@ -43,7 +43,7 @@ static gnoi_form shadow_form(const pair *p, const gnoi_form *f)
 
 static vec3 corner_position(const gno_scene *scene, uint32_t corner)
 {
-    return v3_from(scene->positions[scene->prepared.corner_vertex[corner]]);
+    return v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]);
 }
 
 static int pair_make(pair *p, const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver)

@@ -54,14 +54,14 @@ int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GN
     double lo[2] = {0, 0}, hi[2] = {0, 0};
     if (end - first <= GNOI_FRAME_POINTS) {
         for (uint32_t i = first; i < end; i++)
-            points[i - first] = v3_from(scene->positions[prep->corner_vertex[i]]);
+            points[i - first] = v3_from(prep->positions[prep->corner_vertex[i]]);
         return (int)(end - first);
     }
-    origin = v3_from(scene->positions[prep->corner_vertex[first]]);
+    origin = v3_from(prep->positions[prep->corner_vertex[first]]);
     e1 = v3_unit(v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0)));
     e2 = v3_cross(n, e1);
     for (uint32_t i = first; i < end; i++) {
-        vec3 q = v3_sub(v3_from(scene->positions[prep->corner_vertex[i]]), origin);
+        vec3 q = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
         double s = v3_dot(q, e1), t = v3_dot(q, e2);
         lo[0] = s < lo[0] ? s : lo[0];
         hi[0] = s > hi[0] ? s : hi[0];
@@ -199,7 +199,7 @@ static void set_leaf(const gno_scene *scene, const gnoi_tree *tree, size_t index
         if (poly->corner_count != 3)
             continue;
         for (uint32_t i = 0; i < 3; i++)
-            p[i] = v3_from(scene->positions[prep->corner_vertex[poly->corner + i]]);
+            p[i] = v3_from(prep->positions[prep->corner_vertex[poly->corner + i]]);
         if (!gnoi_frame_locate(&tree->frame, p, 3, l))
             continue;
         if (!placed)
