@@ -1,0 +1,76 @@
+#!/bin/bash
+# The examples of docs/examples: they compile as strict C89 and as C++98 against the libraries as built, run, and do what
+# the documentation says; the README shows draw.c as it is. Prints a PASS or FAIL line a check.
+set -u
+root=$PWD
+build=$(cd "${BUILD:-build}" && pwd) || exit 1
+examples=$root/docs/examples
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+verdict() { # name, then a command
+    local name=$1
+    shift
+    if "$@" >log 2>&1; then echo "PASS examples: $name"; else
+        cat log
+        echo "FAIL examples: $name"
+        failures=1
+    fi
+}
+
+io_libs=$(pkg-config --libs yaml-0.1 assimp libpng 2>/dev/null || echo -lyaml -lassimp -lpng)
+strict='-pedantic-errors -Wall -Wextra -Werror'
+
+c89() { # name, libraries
+    local name=$1
+    shift
+    # shellcheck disable=SC2086
+    ${CC:-gcc} -std=c89 $strict -I"$root/include" "$examples/$name.c" -o "$name" "$@" -lm -pthread
+}
+
+cxx98() {
+    # shellcheck disable=SC2086
+    ${CXX:-g++} -std=c++98 -x c++ $strict -I"$root/include" "$examples/$1.c" -x none -o "$1-cxx" "$build/libgnomon.a" -lm -pthread
+}
+
+splits() {
+    ./"$1" >out && printf '%s\n' '[0, 2) light 1 1 1' '[2, 5) light 0 0 0' '[5, 7) light 1 1 1' '[7, 10) light 0.2 0.9 0.2' | diff - out
+}
+
+draws() { # program: a picture of the right size with light, shadow and background in it
+    rm -f draw.ppm
+    ./"$1" && [ "$(head -n 2 draw.ppm | tr '\n' ' ')" = 'P6 480 270 ' ] && [ "$(wc -c <draw.ppm)" -eq $((15 + 3 * 480 * 270)) ] &&
+        [ "$(tail -c +16 draw.ppm | od -An -v -tu1 -w3 | sort -u | wc -l)" -ge 3 ]
+}
+
+loads() {
+    ./files "$root/scenes/crossing.yaml" out.png && [ -s out.png ] && ! ./files missing.yaml out.png
+}
+
+same_picture() {
+    ./draw && mv draw.ppm c.ppm && ./draw-cxx && cmp c.ppm draw.ppm
+}
+
+# The block of the README that begins with draw.c's first line.
+shown() {
+    awk 'on && /^```/ { exit } on || /^\/\* draw\.c/ { on = 1; print }' "$root/README.md" | diff "$examples/draw.c" -
+}
+
+verdict 'draw.c is C89' c89 draw "$build/libgnomon.a"
+verdict 'draw.c draws' draws draw
+verdict 'split.c is C89' c89 split "$build/libgnomon.a"
+verdict 'split.c splits' splits split
+verdict 'files.c is C89' c89 files "$build/libgnomon-io.a" "$build/libgnomon.a" $io_libs -lOpenEXRCore
+verdict 'files.c loads and writes' loads
+if command -v "${CXX:-g++}" >/dev/null; then
+    verdict 'draw.c is C++98' cxx98 draw
+    verdict 'draw.c draws the same from C++' same_picture
+    verdict 'split.c is C++98' cxx98 split
+    verdict 'split.c splits from C++' splits split-cxx
+else
+    echo "SKIP examples in C++: no ${CXX:-g++}"
+fi
+verdict 'README shows draw.c as it is' shown
+exit $failures
