@@ -500,28 +500,64 @@ static double scatter(unsigned a, unsigned b)
     return (x ^ x >> 16) / 4294967296.0;
 }
 
+/* The rays of a pixel that see one face in one state. */
+typedef struct share_of_pixel {
+    long polygon;
+    unsigned long state;
+    int count;
+    double x, y, rgb[3]; /* sums */
+} share_of_pixel;
+
+#define SHARES 24 /* of one pixel; rays beyond go to the last */
+
+static void count_ray(share_of_pixel *shares, int *count, const oracle_sample *s, double x, double y)
+{
+    int i = 0;
+    while (i < *count && (shares[i].polygon != s->polygon || shares[i].state != s->state)) i++;
+    if (i == SHARES) i--;
+    if (i == *count) {
+        memset(&shares[i], 0, sizeof shares[i]);
+        shares[i].polygon = s->polygon;
+        shares[i].state = s->state;
+        ++*count;
+    }
+    shares[i].count++;
+    shares[i].x += x;
+    shares[i].y += y;
+    for (int k = 0; k < 3; k++) shares[i].rgb[k] += s->rgb[k];
+}
+
+static void add_centred(const oracle *o, const share_of_pixel *share, double rays, double rgb[3])
+{
+    oracle_sample middle = oracle_look(o, share->x / share->count, share->y / share->count);
+    int same = middle.polygon == share->polygon && middle.state == share->state; /* a crescent's middle lies outside it */
+    for (int k = 0; k < 3; k++) rgb[k] += (same ? share->count * middle.rgb[k] : share->rgb[k]) / rays;
+}
+
 oracle_pixel oracle_look_pixel(const oracle *o, int px, int py, int n, unsigned seed)
 {
     oracle_pixel r;
-    memset(&r, 0, sizeof r);
-    r.uniform = 1;
+    share_of_pixel shares[SHARES];
+    int count = 0;
     unsigned place = (unsigned)py * (unsigned)o->image.width + (unsigned)px;
+    memset(&r, 0, sizeof r);
     for (int j = 0; j < n; j++)
         for (int i = 0; i < n; i++) {
             unsigned number = 2 * (place * (unsigned)(n * n) + (unsigned)(j * n + i));
-            oracle_sample s = oracle_look(o, px + (i + scatter(number, seed)) / n, py + (j + scatter(number + 1, seed)) / n);
+            double x = px + (i + scatter(number, seed)) / n, y = py + (j + scatter(number + 1, seed)) / n;
+            oracle_sample s = oracle_look(o, x, y);
             int first = i == 0 && j == 0;
-            if (first) {
-                r.polygon = s.polygon;
-                r.state = s.state;
-            }
-            if (s.polygon != r.polygon || s.state != r.state) r.uniform = 0;
+            count_ray(shares, &count, &s, x, y);
             for (int k = 0; k < 3; k++) {
                 r.rgb[k] += s.rgb[k] / (n * n);
                 r.lower[k] = first ? s.rgb[k] : fmin(r.lower[k], s.rgb[k]);
                 r.upper[k] = first ? s.rgb[k] : fmax(r.upper[k], s.rgb[k]);
             }
         }
+    for (int i = 0; i < count; i++) add_centred(o, &shares[i], n * n, r.centred);
+    r.polygon = shares[0].polygon;
+    r.state = shares[0].state;
+    r.uniform = count == 1;
     return r;
 }
 

@@ -25,6 +25,7 @@ typedef struct oracle_sample {
 /* What the rays of one pixel find. */
 typedef struct oracle_pixel {
     double rgb[3];            /* mean */
+    double centred[3];        /* the mean when each surface in each state has the colour of the middle of its share */
     double lower[3], upper[3]; /* range over the samples */
     long polygon;             /* of the first sample */
     unsigned long state;
