@@ -96,12 +96,13 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb
     gno_status status;
     int threads = gnoi_thread_count(def->threads);
     double t = gnoi_now(), start = t;
+    vec3 eye = v3_from(scene->camera.eye);
     memset(&frame, 0, sizeof frame);
     status = gnoi_scene_prepare(scene, threads);
     stats->prepare_seconds = lap(&t);
     if (status)
         return status;
-    status = gnoi_shadow_cache_build(scene, threads);
+    status = gnoi_shadow_cache_build(scene, scene->camera.type == GNO_CAMERA_ORTHOGRAPHIC ? NULL : &eye, threads);
     stats->shadow_seconds = lap(&t);
     if (status)
         return status;

@@ -2,6 +2,7 @@
  *
  * Place in the data flow: last step of gnoi_scene_prepare. Files list polygons and vertices in any order; every later pass
  * visits neighbours together and would miss the cache on each of them.
+ * Vertices at one place become one, so that edges that meet do so by number too.
  * Polygons are sorted by the Morton number of their first corner (Morton 1966); rings, corners, vertices and normals are then
  * numbered in the order of first use. Nothing but numbers changes: `source` still names the polygon as the caller knows it.
  * Invariant: prepared.positions and prepared.normals hold just what the corners name.
@@ -64,15 +65,44 @@ typedef struct ordering {
     const gnoi_prepared *from;
     gnoi_prepared to;
     numbering vertices, normals;
+    uint32_t *table, table_mask; /* prepared vertices by hash of position */
 } ordering;
+
+static uint32_t hash_position(const double p[3])
+{
+    uint64_t h = 0;
+    for (int k = 0; k < 3; k++) {
+        double v = p[k] + 0.0; /* -0 becomes 0 */
+        uint64_t bits;
+        memcpy(&bits, &v, sizeof bits);
+        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
+        h ^= h >> 29;
+    }
+    return (uint32_t)(h >> 16);
+}
+
+/* The number of a scene vertex: that of the first one at its place. */
+static uint32_t vertex_number(ordering *o, uint32_t old)
+{
+    const double *p = o->scene->positions[old];
+    uint32_t slot;
+    if (o->vertices.of[old] != GNOI_NONE)
+        return o->vertices.of[old];
+    for (slot = hash_position(p) & o->table_mask; o->table[slot] != GNOI_NONE; slot = (slot + 1) & o->table_mask) {
+        const double *q = o->to.positions[o->table[slot]];
+        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
+            return o->vertices.of[old] = o->table[slot];
+    }
+    memcpy(o->to.positions[o->vertices.count], p, sizeof o->to.positions[0]);
+    o->table[slot] = o->vertices.count;
+    return o->vertices.of[old] = o->vertices.count++;
+}
 
 static void copy_corner(ordering *o, uint32_t from, uint32_t to)
 {
     int is_new;
-    uint32_t old = o->from->corner_vertex[from], v = number(&o->vertices, old, &is_new);
-    o->to.corner_vertex[to] = v;
-    if (is_new)
-        memcpy(o->to.positions[v], o->scene->positions[old], sizeof o->to.positions[v]);
+    uint32_t old, v;
+    o->to.corner_vertex[to] = vertex_number(o, o->from->corner_vertex[from]);
     if (!o->from->corner_normal)
         return;
     old = o->from->corner_normal[from];
@@ -123,13 +153,16 @@ static int reserve(ordering *o)
     to->positions = gnoi_malloc(context, to->vertex_capacity, sizeof *to->positions);
     o->vertices.of = gnoi_malloc(context, o->scene->vertex_count, sizeof *o->vertices.of);
     o->normals.of = gnoi_malloc(context, from->normal_count, sizeof *o->normals.of);
+    for (o->table_mask = 15; o->table_mask < 2 * o->scene->vertex_count; o->table_mask = 2 * o->table_mask + 1)
+        ;
+    o->table = gnoi_malloc(context, (size_t)o->table_mask + 1, sizeof *o->table);
     if (from->corner_normal)
         to->corner_normal = gnoi_malloc(context, to->corner_capacity, sizeof *to->corner_normal);
     if (from->normals)
         to->normals = gnoi_malloc(context, to->normal_capacity, sizeof *to->normals);
     if (from->triangles)
         to->triangles = gnoi_malloc(context, to->triangle_capacity, sizeof *to->triangles);
-    return to->polys && to->ring_corner && to->corner_vertex && to->positions && o->vertices.of && o->normals.of &&
+    return to->polys && to->ring_corner && to->corner_vertex && to->positions && o->vertices.of && o->normals.of && o->table &&
            (!from->corner_normal || to->corner_normal) && (!from->normals || to->normals) && (!from->triangles || to->triangles);
 }
 
@@ -148,6 +181,7 @@ gno_status gnoi_order_polygons(gno_scene *scene)
     if (good) {
         sort_polys(scene, keys, keys + count);
         memset(o.vertices.of, 0xff, scene->vertex_count * sizeof *o.vertices.of); /* GNOI_NONE */
+        memset(o.table, 0xff, ((size_t)o.table_mask + 1) * sizeof *o.table);
         memset(o.normals.of, 0xff, normal_count * sizeof *o.normals.of);
         for (size_t i = 0; i < count; i++)
             copy_poly(&o, &prep->polys[keys[i].value], i);
@@ -160,10 +194,15 @@ gno_status gnoi_order_polygons(gno_scene *scene)
         o.to.problems = prep->problems;
     }
     gnoi_free(context, keys, 2 * count, sizeof *keys);
+    gnoi_free(context, o.table, (size_t)o.table_mask + 1, sizeof *o.table);
+    if (good) {
+        gnoi_prepared_free(context, prep);
+        *prep = o.to;
+        good = gnoi_find_solids(scene, o.vertices.of) == GNO_OK;
+    } else {
+        gnoi_prepared_free(context, &o.to);
+    }
     gnoi_free(context, o.vertices.of, scene->vertex_count, sizeof *o.vertices.of);
     gnoi_free(context, o.normals.of, normal_count, sizeof *o.normals.of);
-    gnoi_prepared_free(context, good ? prep : &o.to);
-    if (good)
-        *prep = o.to;
     return good ? GNO_OK : GNO_ERROR_MEMORY;
 }

@@ -30,6 +30,8 @@ void gnoi_prepared_free(gno_context *context, gnoi_prepared *prepared)
     gnoi_free(context, prepared->ring_corner, prepared->ring_capacity, sizeof *prepared->ring_corner);
     gnoi_free(context, prepared->corner_vertex, prepared->corner_capacity, sizeof *prepared->corner_vertex);
     gnoi_free(context, prepared->corner_normal, prepared->corner_capacity, sizeof *prepared->corner_normal);
+    gnoi_free(context, prepared->solids, prepared->solid_count, sizeof *prepared->solids);
+    gnoi_free(context, prepared->vertex_solid, prepared->vertex_capacity, sizeof *prepared->vertex_solid);
     gnoi_free(context, prepared->positions, prepared->vertex_capacity, sizeof *prepared->positions);
     gnoi_free(context, prepared->normals, prepared->normal_capacity, sizeof *prepared->normals);
     gnoi_free(context, prepared->triangles, prepared->triangle_capacity, sizeof *prepared->triangles);

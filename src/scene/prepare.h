@@ -3,7 +3,7 @@
  * Place in the data flow: gno_scene -> measure.c (planes, what each polygon is) -> prepare.c (prepared polygons, rings,
  * corners, triangulations; corner_vertex still indexes the scene's positions) -> normals.c (vertex normals of smooth polygons)
  * -> order.c (polygons, vertices and normals numbered as they lie in space; corner_vertex indexes prepared.positions)
- * -> gnoi_prepared.
+ * -> solid.c (connected parts, which of them are closed) -> gnoi_prepared.
  */
 #ifndef GNOI_SCENE_PREPARE_H
 #define GNOI_SCENE_PREPARE_H
@@ -37,6 +37,9 @@ gno_status gnoi_prepare_normals(gno_scene *scene);
 
 /* Renumbers everything in scene->prepared by place and fills prepared.positions. */
 gno_status gnoi_order_polygons(gno_scene *scene);
+
+/* Finds the connected parts and which are closed: fills prepared.solids and vertex_solid. vertex_number: the prepared vertex of each scene vertex. */
+gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number);
 
 static inline int gnoi_is_smooth(const gnoi_poly *poly)
 {

@@ -46,6 +46,14 @@ typedef struct gnoi_poly {
 
 #define GNOI_NONE 0xffffffffu
 
+/* What is known of polygons that hang together by their vertices. `closed`: they are opaque, without holes, and every edge is passed as often one way
+ * as the other, so that a path that begins and ends outside crosses as many polygons inwards as outwards. */
+typedef struct gnoi_solid {
+    int closed;
+    int outwards; /* normals point outwards on the whole (signed volume) */
+    double lower[3], upper[3];
+} gnoi_solid;
+
 typedef struct gnoi_prepared {
     int valid;
     size_t poly_count, poly_capacity;
@@ -55,7 +63,10 @@ typedef struct gnoi_prepared {
     size_t corner_count, corner_capacity;
     uint32_t *corner_vertex;    /* index into positions */
     size_t vertex_count, vertex_capacity;
-    double (*positions)[3];     /* the scene's, those that corners use, in the order of first use */
+    double (*positions)[3];     /* the scene's, those that corners use, each once, in the order of first use */
+    size_t solid_count;
+    gnoi_solid *solids;         /* connected parts */
+    uint32_t *vertex_solid;     /* the part that a vertex belongs to */
     uint32_t *corner_normal;    /* index into normals, GNOI_NONE where the polygon is not smooth (NULL: no smooth polygon at all) */
     size_t normal_count, normal_capacity;
     float (*normals)[3];        /* unit */
@@ -101,6 +112,15 @@ struct gno_scene {
 /* Makes scene->prepared valid: planes, splitting of polygons that are not planar, triangulations of smooth n-gons, normals.
  * Warns once with counts of degenerate and non-planar polygons. */
 gno_status gnoi_scene_prepare(gno_scene *scene, int threads);
+
+/* The connected part that a prepared polygon belongs to. */
+static inline uint32_t gnoi_solid_of(const gnoi_prepared *prep, const gnoi_poly *poly)
+{
+    return prep->vertex_solid[prep->corner_vertex[poly->corner]];
+}
+
+/* 1 when `point` is certainly outside a closed part: the signed crossings of a path from far away sum to zero. */
+int gnoi_solid_outside(const gno_scene *scene, size_t solid, vec3 point);
 
 /* Drops what was derived from geometry, materials or lights; every change of them calls it. */
 void gnoi_scene_changed(gno_scene *scene);

@@ -2,12 +2,16 @@
 #include "shadow/cache.h"
 #include "base/parallel.h"
 
+/* Entries of `halved` beyond which it is not worth its memory. */
+#define MOST_HALVED ((size_t)1 << 26)
+
 #define PI 3.14159265358979323846
 
 static void free_cache(gno_context *context, gnoi_shadow_cache *cache)
 {
     for (size_t i = 0; cache->trees && i < cache->lamp_count; i++)
         gnoi_tree_free(context, &cache->trees[i]);
+    gnoi_free(context, cache->halved, cache->lamp_count * cache->solid_count, 1);
     gnoi_free(context, cache->trees, cache->lamp_count, sizeof *cache->trees);
     gnoi_free(context, cache->lamps, cache->lamp_count, sizeof *cache->lamps);
     gnoi_free(context, cache, 1, sizeof *cache);
@@ -59,18 +63,54 @@ static gno_status build_tree(void *user, int worker, size_t piece)
 {
     job *j = user;
     (void)worker;
-    return gnoi_tree_build(j->scene, &j->cache->lamps[piece], &j->cache->trees[piece]);
+    return gnoi_tree_build(j->scene, &j->cache->lamps[piece], j->cache->solid_count ? j->cache->halved + piece * j->cache->solid_count : NULL,
+                           &j->cache->trees[piece]);
 }
 
-gno_status gnoi_shadow_cache_build(gno_scene *scene, int threads)
+static int eye_outside(const gno_scene *scene, size_t solid, const vec3 *eye)
+{
+    return !eye || gnoi_solid_outside(scene, solid, *eye);
+}
+
+/* Finds which closed solids have lamp and eye outside. */
+static void set_halved(const gno_scene *scene, const vec3 *eye, gnoi_shadow_cache *cache)
+{
+    for (size_t k = 0; k < cache->solid_count; k++) {
+        if (!scene->prepared.solids[k].closed || !eye_outside(scene, k, eye))
+            continue;
+        for (size_t i = 0; i < cache->lamp_count; i++) {
+            const gnoi_lamp *lamp = &cache->lamps[i];
+            cache->halved[i * cache->solid_count + k] = (unsigned char)(lamp->directional || gnoi_solid_outside(scene, k, lamp->position));
+        }
+    }
+}
+
+static int still_serves(const gno_scene *scene, const vec3 *eye)
+{
+    const gnoi_shadow_cache *cache = scene->shadows;
+    for (size_t k = 0; k < cache->solid_count; k++) {
+        int used = 0;
+        for (size_t i = 0; i < cache->lamp_count; i++)
+            used |= cache->halved[i * cache->solid_count + k];
+        if (used && !eye_outside(scene, k, eye))
+            return 0;
+    }
+    return 1;
+}
+
+gno_status gnoi_shadow_cache_build(gno_scene *scene, const vec3 *eye, int threads)
 {
     gno_context *context = scene->context;
     gnoi_shadow_cache *cache;
     gno_status status = GNO_ERROR_MEMORY;
     size_t n = 0;
     job j;
-    if (scene->shadows)
+    if (scene->shadows && still_serves(scene, eye))
         return GNO_OK;
+    if (scene->shadows) {
+        free_cache(context, scene->shadows);
+        scene->shadows = NULL;
+    }
     cache = gnoi_calloc(context, 1, sizeof *cache);
     if (!cache)
         return gnoi_fail(context, GNO_ERROR_MEMORY, "out of memory for the lights");
@@ -84,7 +124,9 @@ gno_status gnoi_shadow_cache_build(gno_scene *scene, int threads)
     }
     cache->lamps = gnoi_calloc(context, cache->lamp_count, sizeof *cache->lamps);
     cache->trees = gnoi_calloc(context, cache->lamp_count, sizeof *cache->trees);
-    if (cache->lamps && cache->trees) {
+    cache->solid_count = cache->lamp_count * scene->prepared.solid_count <= MOST_HALVED ? scene->prepared.solid_count : 0;
+    cache->halved = gnoi_calloc(context, cache->lamp_count * cache->solid_count, 1);
+    if (cache->lamps && cache->trees && cache->halved) {
         for (size_t i = 0; i < scene->light_count; i++) {
             const gno_light *light = &scene->lights[i].light;
             if (light->type == GNO_LIGHT_AREA)
@@ -93,6 +135,7 @@ gno_status gnoi_shadow_cache_build(gno_scene *scene, int threads)
                 cache->lamps[n] = lamp_from(light);
             n += lamps_of(light);
         }
+        set_halved(scene, eye, cache);
         j.scene = scene;
         j.cache = cache;
         status = gnoi_parallel(context, threads, cache->lamp_count, "shadow matrix", build_tree, &j);

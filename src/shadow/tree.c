@@ -75,7 +75,15 @@ int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GN
     return 4;
 }
 
-static int collect_boxes(const gno_scene *scene, const gnoi_frame *frame, boxes *b)
+/* A polygon of a halved solid that the solid's other side stands in for. */
+static int is_near_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_poly *poly)
+{
+    uint32_t solid = gnoi_solid_of(&scene->prepared, poly);
+    double side = gnoi_lamp_side(lamp, poly->n, poly->d);
+    return halved && halved[solid] && (scene->prepared.solids[solid].outwards ? side > 0 : side < 0);
+}
+
+static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_frame *frame, boxes *b)
 {
     const gnoi_prepared *prep = &scene->prepared;
     for (size_t i = 0; i < prep->poly_count; i++) {
@@ -84,7 +92,7 @@ static int collect_boxes(const gno_scene *scene, const gnoi_frame *frame, boxes 
         vec3 points[GNOI_FRAME_POINTS];
         gnoi_lbox box[6];
         int n;
-        if (!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1)
+        if ((!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1) || is_near_side(scene, lamp, halved, poly))
             continue;
         n = gnoi_frame_boxes(frame, points, gnoi_poly_hull(scene, poly, points), box);
         if (!boxes_reserve(b, b->count + 6))
@@ -281,7 +289,7 @@ static void pack(const gno_scene *scene, gnoi_tree *tree, const boxes *b, const 
     }
 }
 
-gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, gnoi_tree *tree)
+gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *tree)
 {
     gno_context *context = scene->context;
     boxes b = {0};
@@ -290,7 +298,7 @@ gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, gnoi_t
     memset(tree, 0, sizeof *tree);
     b.context = context;
     tree->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
-    if (!boxes_reserve(&b, scene->prepared.poly_count + 6) || !collect_boxes(scene, &tree->frame, &b))
+    if (!boxes_reserve(&b, scene->prepared.poly_count + 6) || !collect_boxes(scene, lamp, halved, &tree->frame, &b))
         goto done;
     tree->entry_count = b.count;
     plan_levels(tree);

@@ -49,8 +49,10 @@ typedef struct gnoi_tree {
     gnoi_tree_leaf *leaves; /* one for each node of level 0 */
 } gnoi_tree;
 
-/* Builds the tree of every polygon that lets less than all light through. Frees nothing on failure but what it took. */
-gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, gnoi_tree *tree);
+/* Builds the tree of every polygon that lets less than all light through. `halved` (one for each solid, or NULL) tells of which
+ * solids the polygons facing one way are enough: where eye and lamp are both outside a closed solid, every path from the lamp
+ * to a point in sight crosses as many of its polygons outwards as inwards, so the far sides cast the whole shadow. */
+gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *tree);
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree);
 
 /* A growing list of polygon numbers. */
