@@ -33,7 +33,7 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_outline_free(&tile->outline);
     gnoi_free(context, tile->order, tile->order_capacity, sizeof *tile->order);
     gnoi_free(context, tile->order_scratch, tile->order_scratch_capacity, sizeof *tile->order_scratch);
-    gnoi_free(context, tile->item_slot, tile->item_capacity, sizeof *tile->item_slot);
+    gnoi_free(context, tile->items, tile->item_capacity, sizeof *tile->items);
     gnoi_free(context, tile->slots, tile->slot_capacity, sizeof *tile->slots);
     gnoi_free(context, tile->edges, tile->edge_capacity, sizeof *tile->edges);
     gnoi_free(context, tile->crossings, tile->crossing_capacity, sizeof *tile->crossings);

@@ -38,6 +38,13 @@ typedef struct gnoi_frame_job {
 
 #define GNOI_BASE_LINES 4 /* at most, where refinement is to judge by them */
 
+/* A polygon of the tile's bin: bounds in pixels from the tile's corner, greatest nearness, its slot or GNOI_NONE. */
+typedef struct gnoi_item {
+    float x0, x1, y0, y1, z1;
+    uint32_t slot;
+    int plain; /* a triangle that needs no cutting */
+} gnoi_item;
+
 /* A surface seen in the tile. */
 typedef struct gnoi_slot {
     gnoi_receiver receiver;
@@ -63,7 +70,7 @@ typedef struct gnoi_tile {
     uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
     gnoi_keyed *order, *order_scratch;     /* items nearest first */
     size_t order_capacity, order_scratch_capacity;
-    uint32_t *item_slot;                   /* slot of each item of the tile's bin, GNOI_NONE */
+    gnoi_item *items;                      /* beside the tile's bin */
     size_t item_capacity;
     size_t slot_count, slot_capacity;
     gnoi_slot *slots;                      /* beside lines.depths, same numbering */

@@ -9,24 +9,44 @@
 /* Rounding of single precision bounds, relative. */
 #define FLOAT_SLACK 1e-6f
 
+/* Rounding of a position in the picture relative to the tile in single precision, in pixels, generously: where items reach
+ * far out of the picture they are not judged by it closely anyway. */
+#define BOUND_SLACK 0.02f
+
 static uint32_t descending_key(float z)
 {
     union { float f; uint32_t i; } u = {z};
     return u.i & 0x80000000u ? u.i : ~u.i & 0x7fffffffu;
 }
 
-/* The greatest nearness of the polygon's corners; behind the near plane counts as nearest of all. */
-static float corner_nearness(const gnoi_tile *tile, const gnoi_poly *poly)
+/* Bounds of a polygon in the picture; everything for one that must be cut first. */
+static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
 {
-    const uint32_t *vertex = tile->job->scene->prepared.corner_vertex;
-    float z = -HUGE_VALF;
-    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
+    const uint32_t *vertex = tile->job->scene->prepared.corner_vertex + poly->corner;
+    double reach = gnoi_outline_reach(&tile->job->view), x0 = HUGE_VAL, x1 = -HUGE_VAL, y0 = HUGE_VAL, y1 = -HUGE_VAL;
+    gnoi_item item;
+    item.z1 = -HUGE_VALF;
+    item.slot = GNOI_NONE;
+    for (uint32_t i = 0; i < poly->corner_count; i++) {
         const gnoi_vertex *v = &tile->job->bins.vertices[vertex[i]];
-        if (!(v->x < HUGE_VAL))
-            return HUGE_VALF;
-        z = v->z > z ? v->z : z;
+        x0 = v->x < x0 ? v->x : x0;
+        x1 = v->x > x1 ? v->x : x1;
+        y0 = v->y < y0 ? v->y : y0;
+        y1 = v->y > y1 ? v->y : y1;
+        item.z1 = v->z > item.z1 ? v->z : item.z1;
     }
-    return z;
+    item.plain = x0 >= -reach && x1 <= reach && y0 >= -reach && y1 <= reach;
+    if (!item.plain) {
+        item.x0 = item.y0 = -HUGE_VALF;
+        item.x1 = item.y1 = item.z1 = HUGE_VALF;
+        return item;
+    }
+    item.plain = poly->corner_count == 3;
+    item.x0 = (float)(x0 - tile->x0) - BOUND_SLACK;
+    item.x1 = (float)(x1 - tile->x0) + BOUND_SLACK;
+    item.y0 = (float)(y0 - tile->y0) - BOUND_SLACK;
+    item.y1 = (float)(y1 - tile->y0) + BOUND_SLACK;
+    return item;
 }
 
 void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count)
@@ -34,14 +54,14 @@ void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count)
     gno_context *context = tile->lines.context;
     if (!gnoi_reserve(context, (void **)&tile->order, &tile->order_capacity, count, sizeof *tile->order) ||
         !gnoi_reserve(context, (void **)&tile->order_scratch, &tile->order_scratch_capacity, count, sizeof *tile->order_scratch) ||
-        !gnoi_reserve(context, (void **)&tile->item_slot, &tile->item_capacity, count, sizeof *tile->item_slot)) {
+        !gnoi_reserve(context, (void **)&tile->items, &tile->item_capacity, count, sizeof *tile->items)) {
         tile->failed = 1;
         return;
     }
     for (size_t i = 0; i < count; i++) {
-        tile->order[i].key = descending_key(corner_nearness(tile, &tile->job->scene->prepared.polys[items[i]])) >> 10;
+        tile->items[i] = item_of(tile, &tile->job->scene->prepared.polys[items[i]]);
+        tile->order[i].key = descending_key(tile->items[i].z1) >> 10;
         tile->order[i].value = (uint32_t)i;
-        tile->item_slot[i] = GNOI_NONE;
     }
     gnoi_sort(tile->order, tile->order_scratch, count);
 }
@@ -72,6 +92,10 @@ static void set_depth_bounds(const gnoi_tile *tile, const gnoi_screen_plane *pla
     depth->farthest = tile->outline.z0 > low ? tile->outline.z0 : low;
     depth->nearest += FLOAT_SLACK * fabsf(depth->nearest);
     depth->farthest -= FLOAT_SLACK * fabsf(depth->farthest);
+    depth->surely_before = depth->nearest + (float)(depth->tolerance_z * fabs((double)depth->nearest) + depth->tolerance_0);
+    depth->surely_behind = depth->farthest - (float)(depth->tolerance_z * fabs((double)depth->farthest) + depth->tolerance_0);
+    depth->surely_before += FLOAT_SLACK * fabsf(depth->surely_before);
+    depth->surely_behind -= FLOAT_SLACK * fabsf(depth->surely_behind);
 }
 
 static double clamp(double v, double lo, double hi) { return v < lo ? lo : v > hi ? hi : v; }
@@ -154,10 +178,12 @@ static int set_edges(gnoi_tile *tile)
     return 1;
 }
 
+/* Truncation instead of floor: what is added makes the number positive. */
 static int32_t line_position(const gnoi_tile *tile, double x)
 {
     double t = (x - tile->x0) * GNOI_X_ONE;
-    return (int32_t)floor(clamp(t, -(double)GNOI_X_ONE, (double)(GNOI_TILE_W + 1) * GNOI_X_ONE) + 0.5);
+    t = clamp(t, -(double)GNOI_X_ONE, (double)(GNOI_TILE_W + 1) * GNOI_X_ONE);
+    return (int32_t)(t + (GNOI_X_ONE + 0.5)) - GNOI_X_ONE;
 }
 
 static void draw_line(gnoi_tile *tile, uint32_t line, uint32_t slot)
@@ -181,64 +207,59 @@ static void draw_line(gnoi_tile *tile, uint32_t line, uint32_t slot)
     }
 }
 
-/* 1 when a surface no nearer than `nearest` may still be seen on the line. */
-static int is_open(const gnoi_line *line, float nearest) { return line->uncovered > 0 || !(line->farthest > nearest); }
-
-/* Lines of the tile that the outline may cross: [*first,*end). */
-static void line_range(const gnoi_tile *tile, uint32_t *first, uint32_t *end)
+/* 1 when a line may cross the item and show a surface no nearer than `nearest`. */
+static int is_open(const gnoi_tile *tile, const gnoi_line *line, const gnoi_item *item, float nearest)
 {
-    double r0 = floor(tile->outline.y0 - tile->y0) + 1, r1 = floor(tile->outline.y1 - tile->y0) + 1;
-    int rows = tile->height + 2;
-    r0 = clamp(r0, 0, rows);
-    r1 = clamp(r1, -1, rows - 1);
-    *first = tile->row_line[(int)r0];
-    *end = r1 < r0 ? *first : tile->row_line[(int)r1 + 1];
+    float y = (float)(line->y - tile->y0);
+    return y >= item->y0 && y < item->y1 && (float)line->xa < item->x1 * GNOI_X_ONE && (float)line->xb > item->x0 * GNOI_X_ONE &&
+           (line->uncovered > 0 || !(line->farthest > nearest));
 }
 
-static void draw_item(gnoi_tile *tile, uint32_t item, uint32_t index)
+/* Lines of the tile that the item may cross: [*first,*end). */
+static void line_range(const gnoi_tile *tile, const gnoi_item *item, uint32_t *first, uint32_t *end)
+{
+    int rows = tile->height + 2;
+    int r0 = (int)clamp((double)item->y0 + 1, 0, rows), r1 = (int)clamp((double)item->y1 + 1, 0, rows - 1);
+    *first = tile->row_line[r0];
+    *end = item->y1 + 1 < 0 || r1 < r0 ? *first : tile->row_line[r1 + 1];
+}
+
+static void draw_item(gnoi_tile *tile, gnoi_item *item, uint32_t index)
 {
     const gnoi_poly *poly = &tile->job->scene->prepared.polys[index];
-    const gnoi_outline *o = &tile->outline;
-    uint32_t first, end, line, slot;
-    float bound;
+    uint32_t line, end;
+    float bound = item->z1 + FLOAT_SLACK * fabsf(item->z1);
+    if (!(item->x1 > 0) || !(item->x0 < (float)tile->width))
+        return;
+    for (line_range(tile, item, &line, &end); line < end && !is_open(tile, &tile->lines.lines[line], item, bound); line++)
+        ;
+    if (line == end)
+        return;
     if (!gnoi_outline_set(&tile->outline, tile->job->scene, &tile->job->view, tile->job->bins.vertices, poly)) {
         tile->failed = 1;
         return;
     }
-    if (o->count < 3 || !(o->x1 > tile->x0) || !(o->x0 < tile->x0 + tile->width))
+    if (tile->outline.count < 3)
         return;
-    line_range(tile, &first, &end);
-    bound = o->z1 + FLOAT_SLACK * fabsf(o->z1);
-    for (line = first; line < end; line++) {
-        const gnoi_line *l = &tile->lines.lines[line];
-        if (l->y >= o->y0 && l->y < o->y1 && is_open(l, bound))
-            break;
-    }
-    if (line == end)
-        return;
-    slot = tile->item_slot[item];
-    if (slot == GNOI_NONE)
-        slot = tile->item_slot[item] = new_slot(tile, index);
-    if (slot == GNOI_NONE)
+    if (item->slot == GNOI_NONE)
+        item->slot = new_slot(tile, index);
+    if (item->slot == GNOI_NONE)
         return;
     if (!set_edges(tile)) {
         tile->failed = 1;
         return;
     }
-    const gnoi_depth *depth = &tile->lines.depths[slot];
-    bound = depth->nearest + (float)(depth->tolerance_z * fabs((double)depth->nearest) + depth->tolerance_0);
-    for (; line < end; line++) {
-        const gnoi_line *l = &tile->lines.lines[line];
-        if (l->y >= o->y0 && l->y < o->y1 && is_open(l, bound))
-            draw_line(tile, line, slot);
-    }
+    bound = tile->lines.depths[item->slot].surely_before;
+    for (; line < end; line++)
+        if (is_open(tile, &tile->lines.lines[line], item, bound))
+            draw_line(tile, line, item->slot);
 }
 
 void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count)
 {
     for (size_t i = 0; i < count && !tile->failed; i++) {
         uint32_t item = tile->order[i].value;
-        draw_item(tile, item, items[item]);
+        draw_item(tile, &tile->items[item], items[item]);
     }
     tile->failed |= tile->lines.failed;
 }

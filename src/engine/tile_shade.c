@@ -145,7 +145,7 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
 
 static void set_point(gnoi_batch *b, int i, const gnoi_view *view, const gnoi_screen_plane *nearness, double x, double y)
 {
-    double u = (x - 0.5 * view->width) / view->s, v = (y - 0.5 * view->height) / view->s, z = gnoi_plane_at(nearness, x, y);
+    double k = 1 / view->s, u = (x - 0.5 * view->width) * k, v = (y - 0.5 * view->height) * k, z = gnoi_plane_at(nearness, x, y);
     vec3 p = v3_sub(v3_scale(view->right, u), v3_scale(view->up, v));
     p = view->orthographic ? v3_mad(p, view->forward, -z) : v3_scale(v3_add(p, view->forward), 1 / z);
     b->px[i] = (float)p.x;
@@ -159,9 +159,9 @@ static void set_normal(gnoi_batch *b, int i, const gnoi_frame_job *job, gnoi_slo
     if (slot->receiver.poly->shading == GNO_SHADING_PHONG) {
         const gnoi_screen_plane *f = slot->interp.normal;
         gnoi_interp_seek(&slot->interp, job->scene, &job->view, slot->receiver.poly, x, y);
-        n = v3_unit(v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y)));
-        if (v3_dot(n, g) < 0)
-            n = v3_scale(n, -1);
+        n = v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y));
+        /* Near unit length on the viewer's side; the batch makes it unit. */
+        n = v3_scale(n, (v3_dot(n, g) < 0 ? -1 : 1) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
     }
     b->nx[i] = (float)n.x;
     b->ny[i] = (float)n.y;

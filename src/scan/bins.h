@@ -48,6 +48,9 @@ typedef struct gnoi_outline {
     gnoi_hpoint *scratch;
 } gnoi_outline;
 
+/* Picture coordinates within which polygons need no cutting, both ways from the picture's corner. */
+double gnoi_outline_reach(const gnoi_view *view);
+
 /* Sets the outline of a polygon; count is 0 when nothing of it can be seen. Returns 0 when memory fails. */
 int gnoi_outline_set(gnoi_outline *outline, const gno_scene *scene, const gnoi_view *view, const gnoi_vertex *vertices,
                      const gnoi_poly *poly);

@@ -103,6 +103,16 @@ static int in_front(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t 
     return 0;
 }
 
+/* The same, by the bounds in the tile alone where they tell. */
+static int compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x0, int32_t x1, int32_t *cut, int *a_first)
+{
+    if (a->nearest < b->surely_behind)
+        return -1;
+    if (a->farthest > b->surely_before)
+        return 1;
+    return in_front(a, b, y, x0, x1, cut, a_first);
+}
+
 /* Replaces [u,v) of piece p by slot. `before` precedes p. Returns the last piece ending at or before v. */
 static uint32_t replace_part(gnoi_lines *lines, uint32_t line, uint32_t before, uint32_t p, uint32_t slot, int32_t u, int32_t v)
 {
@@ -159,7 +169,7 @@ int gnoi_lines_insert(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x
         }
         u = x0;
         v = lines->pieces[p].x1 < x1 ? lines->pieces[p].x1 : x1;
-        front = in_front(&lines->depths[slot], &lines->depths[lines->pieces[p].slot], l->y, u, v, &cut, &new_first);
+        front = compare(&lines->depths[slot], &lines->depths[lines->pieces[p].slot], l->y, u, v, &cut, &new_first);
         if (front >= 0) {
             int32_t from = front || new_first ? u : cut, to = front || !new_first ? v : cut;
             before = replace_part(lines, line, before, p, slot, from, to);

@@ -24,6 +24,8 @@ typedef struct gnoi_depth {
     uint32_t index;              /* the scene's polygon number */
     int32_t priority;
     float nearest, farthest;     /* bounds of nearness within the tile */
+    float surely_before, surely_behind; /* what is nearer than the first is in front of it, what is farther than the second
+                                           behind it: the bounds widened by the tolerance */
 } gnoi_depth;
 
 typedef struct gnoi_piece {

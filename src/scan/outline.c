@@ -112,11 +112,16 @@ static int set_cut(gnoi_outline *o, const gno_scene *scene, const gnoi_view *vie
     return 1;
 }
 
+double gnoi_outline_reach(const gnoi_view *view)
+{
+    return GUARD * (view->width < view->height ? view->width : view->height);
+}
+
 int gnoi_outline_set(gnoi_outline *o, const gno_scene *scene, const gnoi_view *view, const gnoi_vertex *vertices,
                      const gnoi_poly *poly)
 {
     const gnoi_prepared *prep = &scene->prepared;
-    double guard_x = GUARD * view->width, guard_y = GUARD * view->height;
+    double reach = gnoi_outline_reach(view);
     o->count = o->ring_count = 0;
     o->x0 = o->y0 = HUGE_VAL;
     o->x1 = o->y1 = -HUGE_VAL;
@@ -134,7 +139,7 @@ int gnoi_outline_set(gnoi_outline *o, const gno_scene *scene, const gnoi_view *v
         }
         o->ring_end[o->ring_count++] = (uint32_t)o->count;
     }
-    if (o->x0 >= -guard_x && o->x1 <= view->width + guard_x && o->y0 >= -guard_y && o->y1 <= view->height + guard_y)
+    if (o->x0 >= -reach && o->x1 <= reach && o->y0 >= -reach && o->y1 <= reach)
         return 1;
     return set_cut(o, scene, view, poly);
 }

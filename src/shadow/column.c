@@ -18,6 +18,9 @@
 #define REQUESTS 64
 #define REQUEST_SPREAD 16.0f
 
+/* Columns of so many casters are sorted into rows. */
+#define LONG_COLUMN 8
+
 /* Everything about one (receiver, lamp) pair that its casters' tests share. */
 typedef struct pair {
     const gno_scene *scene;
@@ -582,6 +585,55 @@ struct gnoi_request {
     gnoi_probe probe;
 };
 
+/* Pixel row of the receiver's region, for sorting casters; rows beyond it are its first and last. */
+static int region_row(const gnoi_receiver *r, double y)
+{
+    double first = floor(r->y0);
+    int last = (int)(floor(r->y1) - first);
+    return y <= first ? 0 : y >= first + last ? last : (int)(y - first);
+}
+
+static void caster_rows(const gnoi_receiver *r, const gnoi_caster *c, int *first, int *last)
+{
+    *first = region_row(r, (double)c->y0);
+    *last = region_row(r, (double)c->y1);
+}
+
+/* Lists a long column's casters by the rows that they may cross, so that a line looks at those of its row only. */
+static int sort_into_rows(const gnoi_receiver *r, gnoi_columns *columns, gnoi_column *column)
+{
+    size_t rows = (size_t)region_row(r, r->y1) + 1, need = rows + 1;
+    const gnoi_caster *casters = columns->casters + column->caster;
+    uint32_t *start;
+    int first, last;
+    for (uint32_t i = 0; i < column->caster_count; i++) {
+        caster_rows(r, &casters[i], &first, &last);
+        need += (size_t)(last - first + 1);
+    }
+    if (!gnoi_reserve(columns->context, (void **)&columns->rows.items, &columns->rows.capacity, columns->rows.count + need,
+                      sizeof *columns->rows.items))
+        return 0;
+    column->rows = (uint32_t)columns->rows.count;
+    start = columns->rows.items + column->rows;
+    for (size_t k = 0; k <= rows; k++)
+        start[k] = 0;
+    for (uint32_t i = 0; i < column->caster_count; i++) {
+        caster_rows(r, &casters[i], &first, &last);
+        for (int k = first; k <= last; k++)
+            start[k]++;
+    }
+    for (size_t k = 1; k < rows; k++)
+        start[k] += start[k - 1];
+    start[rows] = start[rows - 1]; /* ends so far: filling from the back turns them into beginnings */
+    for (uint32_t i = column->caster_count; i-- > 0;) {
+        caster_rows(r, &casters[i], &first, &last);
+        for (int k = first; k <= last; k++)
+            start[rows + 1 + --start[k]] = column->caster + i;
+    }
+    columns->rows.count += need;
+    return 1;
+}
+
 /* Tests all candidates in columns->found. */
 static int settle(const pair *p, const gnoi_view *view, gnoi_columns *columns, gnoi_column *column)
 {
@@ -601,7 +653,7 @@ static int settle(const pair *p, const gnoi_view *view, gnoi_columns *columns, g
     column->caster_count = (uint32_t)(columns->caster_count - column->caster);
     columns->ones += column->caster_count;
     column->state = column->caster_count || p->lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
-    return 1;
+    return column->caster_count < LONG_COLUMN || sort_into_rows(p->receiver, columns, column);
 }
 
 int gnoi_columns_finish(const gnoi_view *view, const gnoi_tree *tree, gnoi_columns *columns)
@@ -667,6 +719,7 @@ int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_l
     columns->asked++;
     column->caster = 0;
     column->caster_count = 0;
+    column->rows = GNOI_NONE;
     column->state = GNOI_COLUMN_DARK;
     if (!pair_make(&p, scene, view, lamp, receiver))
         return 1;
@@ -682,8 +735,8 @@ int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_l
     return settle(&p, view, columns, column);
 }
 
-/* Where line y crosses the caster, in pairs (even-odd filling). */
-static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double y, gnoi_columns *columns)
+/* Where line y crosses the caster between xa and xb, in pairs (even-odd filling). */
+static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double y, double xa, double xb, gnoi_columns *columns)
 {
     const gnoi_edge *edges = columns->edges + c->edge;
     double *x = columns->crossings;
@@ -699,7 +752,7 @@ static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double
         x[k] = v;
     }
     for (uint32_t i = 0; i + 1 < n; i += 2)
-        if (x[i] < x[i + 1] && !add_interval(columns, x[i], x[i + 1], m->transmission))
+        if (x[i] < x[i + 1] && x[i] < xb && x[i + 1] > xa && !add_interval(columns, x[i], x[i + 1], m->transmission))
             return 0;
     return 1;
 }
@@ -708,16 +761,24 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
                           const gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
 {
     float fy = (float)y;
+    uint32_t count = column->caster_count;
+    const uint32_t *listed = NULL;
+    if (column->rows != GNOI_NONE) {
+        const uint32_t *start = columns->rows.items + column->rows;
+        int row = region_row(receiver, y), rows = region_row(receiver, receiver->y1) + 1;
+        listed = start + rows + 1 + start[row];
+        count = start[row + 1] - start[row];
+    }
     columns->interval_count = 0;
-    for (uint32_t i = 0; i < column->caster_count; i++) {
-        const gnoi_caster *c = &columns->casters[column->caster + i];
+    for (uint32_t i = 0; i < count; i++) {
+        const gnoi_caster *c = &columns->casters[listed ? listed[i] : column->caster + i];
         if (fy < c->y0 || fy > c->y1)
             continue;
         if (c->edge_count > columns->crossing_capacity &&
             !gnoi_reserve(columns->context, (void **)&columns->crossings, &columns->crossing_capacity, c->edge_count,
                           sizeof *columns->crossings))
             return 0;
-        if (!caster_intervals(scene, c, y, columns))
+        if (!caster_intervals(scene, c, y, xa, xb, columns))
             return 0;
     }
     return !lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns);
@@ -725,6 +786,7 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
 
 void gnoi_columns_reset(gnoi_columns *columns)
 {
+    columns->rows.count = 0;
     columns->request_count = 0;
     columns->caster_count = 0;
     columns->edge_count = 0;
@@ -737,6 +799,7 @@ void gnoi_columns_free(gnoi_columns *columns)
     gnoi_free(columns->context, columns->found.items, columns->found.capacity, sizeof *columns->found.items);
     gnoi_free(columns->context, columns->requests, columns->request_capacity, sizeof *columns->requests);
     gnoi_free(columns->context, columns->front.nodes.items, columns->front.nodes.capacity, sizeof *columns->front.nodes.items);
+    gnoi_free(columns->context, columns->rows.items, columns->rows.capacity, sizeof *columns->rows.items);
     gnoi_free(columns->context, columns->points, columns->point_capacity, sizeof *columns->points);
     gnoi_free(columns->context, columns->intervals, columns->interval_capacity, sizeof *columns->intervals);
     gnoi_free(columns->context, columns->crossings, columns->crossing_capacity, sizeof *columns->crossings);

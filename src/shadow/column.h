@@ -40,6 +40,8 @@ typedef struct gnoi_caster {
 typedef struct gnoi_column {
     gnoi_column_state state;
     uint32_t caster, caster_count; /* into gnoi_columns.casters */
+    uint32_t rows; /* a long column's casters by pixel row: into gnoi_columns.rows, where offsets into the same list for
+                      row 0, 1, ... of the region and an end stand; GNOI_NONE for a short one */
 } gnoi_column;
 
 struct gnoi_request; /* a receiver waiting for its neighbours, so that they walk the tree together */
@@ -52,6 +54,7 @@ typedef struct gnoi_columns {
     size_t edge_count, edge_capacity;
     gnoi_edge *edges;
     gnoi_list found;                 /* candidates of the tree */
+    gnoi_list rows;
     size_t point_capacity;
     gnoi_hpoint *points;             /* two halves: before and after a cut */
     size_t interval_count, interval_capacity;
