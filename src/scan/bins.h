@@ -12,7 +12,7 @@
 #include "project/view.h"
 #include "scene/scene.h"
 
-#define GNOI_TILE_W 32
+#define GNOI_TILE_W 24
 #define GNOI_TILE_H 32
 
 typedef struct gnoi_vertex {

@@ -221,14 +221,25 @@ static void add_polygon(const smoothing *s, size_t i, add_fn add, void *user)
 {
     const gnoi_poly *poly = &s->out->polys[i];
     gno_weighting weighting = s->object->weighting;
-    double weight = weighting == GNO_WEIGHTING_AREA ? doubled_area(s, poly) : 1;
-    uint32_t ring;
+    double weight;
+    uint32_t ring, k = 0;
+    while (k < poly->corner_count && class_at(s, poly->corner + k) >= GNOI_WELD_NOWHERE) {
+        k++;
+    }
+    if (k == poly->corner_count) {
+        return;
+    }
+    weight = weighting == GNO_WEIGHTING_AREA ? doubled_area(s, poly) : 1;
     for (ring = poly->ring; ring < poly->ring + poly->ring_count; ring++) {
         size_t from = s->out->ring_corner[ring], to = s->out->ring_corner[ring + 1], corner;
         uint32_t before = class_at(s, to - 1);
         for (corner = from; corner < to; corner++) {
             uint32_t class = class_at(s, corner);
             entry e;
+            if (class >= GNOI_WELD_NOWHERE) {
+                before = class;
+                continue;
+            }
             e.corner = (uint32_t)corner;
             e.poly = (uint32_t)i;
             e.weight = weighting == GNO_WEIGHTING_ANGLE ? angle_at(s, poly, from, to, corner) : weight;

@@ -24,7 +24,8 @@ static uint64_t hash_position(const double p[3])
     return hash;
 }
 
-static uint32_t find_class(gnoi_weld *w, const double (*positions)[3], uint32_t vertex)
+/* The class at a vertex's place; a new one if `make`, else GNOI_WELD_NOWHERE where there is none. */
+static uint32_t find_class(gnoi_weld *w, const double (*positions)[3], uint32_t vertex, int make)
 {
     const double *p = positions[vertex];
     size_t slot = (size_t)hash_position(p) & (w->table_size - 1);
@@ -34,6 +35,9 @@ static uint32_t find_class(gnoi_weld *w, const double (*positions)[3], uint32_t 
             return gnoi_weld_class(w, w->table[slot]);
         }
         slot = (slot + 1) & (w->table_size - 1);
+    }
+    if (!make) {
+        return GNOI_WELD_NOWHERE;
     }
     w->table[slot] = vertex;
     return w->count++;
@@ -55,7 +59,8 @@ static void set_range(const gnoi_prepared *prepared, size_t first, size_t last, 
     w->span = (size_t)(high - low) + 1;
 }
 
-static void set_classes(const gno_scene *scene, size_t first, size_t last, gnoi_weld *w)
+/* First the places of open corners get classes, then the other corners there find them. */
+static void set_classes(const gno_scene *scene, size_t first, size_t last, int make, gnoi_weld *w)
 {
     const double(*positions)[3] = (const double(*)[3])scene->positions;
     const gnoi_prepared *prepared = &scene->prepared;
@@ -64,19 +69,33 @@ static void set_classes(const gno_scene *scene, size_t first, size_t last, gnoi_
         const gnoi_poly *poly = &prepared->polys[i];
         for (k = 0; gnoi_is_smooth(poly) && k < poly->corner_count; k++) {
             uint32_t v = prepared->corner_vertex[poly->corner + k];
-            if (gnoi_weld_class(w, v) == GNOI_NONE) {
-                w->class_of[v - w->low] = find_class(w, positions, v);
+            if ((!make || prepared->corner_normal[poly->corner + k] == GNOI_NONE) && gnoi_weld_class(w, v) == GNOI_NONE) {
+                w->class_of[v - w->low] = find_class(w, positions, v, make);
             }
         }
     }
 }
 
+static size_t count_open(const gnoi_prepared *prepared, size_t first, size_t last)
+{
+    size_t i, k, open = 0;
+    for (i = first; i < last; i++) {
+        const gnoi_poly *poly = &prepared->polys[i];
+        for (k = 0; gnoi_is_smooth(poly) && k < poly->corner_count; k++) {
+            open += prepared->corner_normal[poly->corner + k] == GNOI_NONE;
+        }
+    }
+    return open;
+}
+
 int gnoi_weld_make(const gno_scene *scene, size_t first, size_t last, gnoi_weld *weld)
 {
+    size_t open;
     set_range(&scene->prepared, first, last, weld);
     weld->count = 0;
     weld->table_size = 16;
-    while (weld->table_size < 2 * weld->span) {
+    open = count_open(&scene->prepared, first, last);
+    while (weld->table_size < 2 * (open < weld->span ? open : weld->span)) {
         weld->table_size *= 2;
     }
     weld->class_of = gnoi_malloc(scene->context, weld->span, sizeof *weld->class_of);
@@ -86,7 +105,8 @@ int gnoi_weld_make(const gno_scene *scene, size_t first, size_t last, gnoi_weld 
     }
     memset(weld->class_of, 0xff, weld->span * sizeof *weld->class_of); /* GNOI_NONE everywhere */
     memset(weld->table, 0xff, weld->table_size * sizeof *weld->table);
-    set_classes(scene, first, last, weld);
+    set_classes(scene, first, last, 1, weld);
+    set_classes(scene, first, last, 0, weld);
     return 1;
 }
 
