@@ -531,14 +531,16 @@ static int copy_polygon(gno_scene *to, const gno_polygon *p, double scale, const
     return gno_scene_add_mesh(to, &d, NULL) == GNO_OK;
 }
 
+/* The light as it was, seen at the new size: intensities follow the distances they fall off with. */
 static int copy_light(gno_scene *to, gno_light l, double scale, const double offset[3])
 {
+    int falls = l.type != GNO_LIGHT_DIRECTIONAL || (l.falloff == GNO_FALLOFF_LINEAR && l.distance_from_viewer);
     for (int k = 0; k < 3; k++) {
         l.position[k] = scale * l.position[k] + offset[k];
         l.edge1[k] *= scale;
         l.edge2[k] *= scale;
-        if (l.falloff == GNO_FALLOFF_LINEAR) l.intensity[k] *= scale;
-        if (l.falloff == GNO_FALLOFF_INVERSE_SQUARE) l.intensity[k] *= scale * scale;
+        if (falls && l.falloff == GNO_FALLOFF_LINEAR) l.intensity[k] *= scale;
+        if (falls && l.falloff == GNO_FALLOFF_INVERSE_SQUARE) l.intensity[k] *= scale * scale;
     }
     l.falloff_k *= scale;
     return gno_scene_add_light(to, NULL, &l, NULL) == GNO_OK;
