@@ -244,6 +244,7 @@ static void test_glass(void **state) { (void)state; judge_kind(SCENE_GLASS, 8); 
 static void test_around(void **state) { (void)state; judge_kind(SCENE_AROUND, 6); }
 static void test_blob(void **state) { (void)state; judge_kind(SCENE_BLOB, 3); }
 static void test_lattice(void **state) { (void)state; judge_kind(SCENE_LATTICE, 8); }
+static void test_solids(void **state) { (void)state; judge_kind(SCENE_SOLIDS, 8); }
 static void test_torch(void **state) { (void)state; judge_kind(SCENE_TORCH, 4); }
 
 /* Patches on a wall stay on it when a file's six decimals round every corner off the common plane. */
@@ -396,6 +397,26 @@ static void test_mesh_holds_light(void **state)
     expect_sealed(&s, 0, 0.5, 0);
 }
 
+/* A room whose walls are drawn from within only, like a doll's house: the eye looks in from outside, the sun does not. */
+static void test_dolls_house_is_dark(void **state)
+{
+    (void)state;
+    const double a[3] = {-1, -1, 0}, b[3] = {1, 1, 1.2}, eye[3] = {2.5, -3, 2.5}, target[3] = {0, 0, 0.4}, centre[3] = {0.2, 0.1, 0.5};
+    sealed s = sealed_scene(160, 120, eye, target, 40);
+    gno_material m;
+    int inner = 0;
+    s.image.background[0] = s.image.background[1] = s.image.background[2] = 0.5;
+    assert_int_equal(gno_scene_set_image(s.scene, &s.image), GNO_OK);
+    assert_int_equal(gno_scene_material(s.scene, s.dull, &m), GNO_OK);
+    m.two_sided = 0;
+    assert_int_equal(gno_scene_add_material(s.scene, &m, &inner), GNO_OK);
+    assert_true(add_box(s.scene, a, b, 1, inner));
+    assert_true(add_blob(s.scene, 1, 0.3, 0, centre, s.dull, GNO_SHADING_FLAT));
+    add_lamp(&s, GNO_LIGHT_DIRECTIONAL, -0.5, 0.6, -0.8);
+    add_lamp(&s, GNO_LIGHT_POINT, 3, -2, 4);
+    expect_sealed(&s, 0.5, 0.5, 0.5);
+}
+
 /* Two boxes wall on wall under the sun, seen from within: no light along the shared wall. */
 static void test_party_wall_is_tight(void **state)
 {
@@ -422,6 +443,7 @@ int main(void)
         cmocka_unit_test(test_around),
         cmocka_unit_test(test_blob),
         cmocka_unit_test(test_lattice),
+        cmocka_unit_test(test_solids),
         cmocka_unit_test(test_torch),
         cmocka_unit_test(test_rounded_details),
         cmocka_unit_test(test_places),
@@ -429,6 +451,7 @@ int main(void)
         cmocka_unit_test(test_box_is_closed),
         cmocka_unit_test(test_mesh_is_closed),
         cmocka_unit_test(test_mesh_holds_light),
+        cmocka_unit_test(test_dolls_house_is_dark),
         cmocka_unit_test(test_party_wall_is_tight),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

@@ -65,7 +65,7 @@ static void random_plane(maker *m, double u[3], double v[3])
 
 const char *scene_kind_name(scene_kind kind)
 {
-    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "blob"};
+    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "solids", "blob"};
     return names[kind];
 }
 
@@ -355,6 +355,20 @@ static void lattice(maker *m)
     }
 }
 
+/* Boxes and small blobs in the midst of each other; one that is wound inwards and drawn from one side only lets the eye in. */
+static void solids(maker *m)
+{
+    floor_at(m, -1.5, 4);
+    for (int i = 0; i < 6; i++) {
+        double a[3], b[3];
+        int inwards = pick(m, 2), round = pick(m, 3) == 0, material = any_material(m);
+        somewhere(m, 1.3, a);
+        for (int k = 0; k < 3; k++) b[k] = a[k] + between(m, 0.5, 1.8);
+        keep(m, round ? add_blob(m->scene, 0, 0.8, 0.1, a, material, GNO_SHADING_FLAT) : add_box(m->scene, a, b, inwards, material));
+    }
+    soup(m, 2, 1, 0.8);
+}
+
 static void blob(maker *m)
 {
     double centre[3] = {0, 0, 0};
@@ -382,7 +396,8 @@ static void add_materials(maker *m, scene_kind kind)
         t.shininess = between(m, 1, 12);
         t.shading = constant ? GNO_SHADING_CONSTANT : GNO_SHADING_FLAT;
         int one_sided = pick(m, 4) == 0;
-        if (kind == SCENE_SOUP || kind == SCENE_STARS || kind == SCENE_BLOB) t.two_sided = !one_sided;
+        one_sided |= kind == SCENE_SOLIDS && i % 2;
+        if (kind == SCENE_SOUP || kind == SCENE_STARS || kind == SCENE_SOLIDS || kind == SCENE_BLOB) t.two_sided = !one_sided;
         keep(m, gno_scene_add_material(m->scene, &t, NULL) == GNO_OK);
     }
 }
@@ -436,7 +451,7 @@ static void add_camera(maker *m, scene_kind kind)
     c.height = between(m, 3, 5);
     if (pick(m, 3) == 0) c.type = GNO_CAMERA_ORTHOGRAPHIC;
     if (kind == SCENE_TORCH) c.type = GNO_CAMERA_PERSPECTIVE;
-    if (kind == SCENE_ROOM || kind == SCENE_AROUND) {
+    if (kind == SCENE_ROOM || kind == SCENE_AROUND || (kind == SCENE_SOLIDS && pick(m, 4) == 0)) {
         c.type = GNO_CAMERA_PERSPECTIVE;
         c.fov = between(m, 50, 110);
         somewhere(m, 1, c.eye);
@@ -485,6 +500,7 @@ gno_scene *random_scene(gno_context *context, scene_kind kind, unsigned seed, in
     case SCENE_ROOM: keep(&m, add_box(m.scene, a, b, 1, any_material(&m))); boxes(&m, 4, 1, -1.5); break;
     case SCENE_GLASS: glass(&m); break;
     case SCENE_LATTICE: lattice(&m); break;
+    case SCENE_SOLIDS: solids(&m); break;
     case SCENE_TORCH: floor_at(&m, -1.5, 4); soup(&m, 12, 1.2, 1.2); boxes(&m, 2, 1.5, -1.5); break;
     case SCENE_AROUND: soup(&m, 30, 1.5, 1.8); break;
     default: blob(&m); break;

@@ -16,6 +16,7 @@ typedef enum scene_kind {
     SCENE_AROUND,  /* polygons in front of, behind and across the plane of the eye */
     SCENE_LATTICE, /* everything on whole numbers: shared corners, common planes, edges through pixel corners */
     SCENE_TORCH,   /* the light stands in the eye: no shadow can be seen */
+    SCENE_SOLIDS,  /* closed bodies in and through each other, wound both ways, some open to the eye from behind */
     SCENE_BLOB,    /* a closed smooth mesh on a plane, Gouraud or Phong */
     SCENE_KINDS
 } scene_kind;
