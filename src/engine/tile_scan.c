@@ -159,19 +159,7 @@ static int set_edges(gnoi_tile *tile)
         uint32_t end = o->ring_end[r];
         for (uint32_t i = first; i < end; i++) {
             const gnoi_hpoint *a = &o->points[i], *b = &o->points[i + 1 < end ? i + 1 : first];
-            gnoi_edge *e = &tile->edges[tile->edge_count];
-            if (a->y == b->y)
-                continue;
-            if (a->y > b->y) {
-                const gnoi_hpoint *swap = a;
-                a = b;
-                b = swap;
-            }
-            e->x = a->x;
-            e->y = a->y;
-            e->y1 = b->y;
-            e->slope = (b->x - a->x) / (b->y - a->y);
-            tile->edge_count++;
+            tile->edge_count += (size_t)gnoi_edge_set(&tile->edges[tile->edge_count], a->x, a->y, b->x, b->y);
         }
         first = end;
     }
@@ -189,18 +177,8 @@ static int32_t line_position(const gnoi_tile *tile, double x)
 static void draw_line(gnoi_tile *tile, uint32_t line, uint32_t slot)
 {
     double y = tile->lines.lines[line].y, *x = tile->crossings;
-    size_t n = 0;
-    for (size_t i = 0; i < tile->edge_count; i++) {
-        const gnoi_edge *e = &tile->edges[i];
-        if (y < e->y || y >= e->y1)
-            continue;
-        double v = gnoi_edge_at(e, y);
-        size_t k = n++;
-        for (; k > 0 && x[k - 1] > v; k--)
-            x[k] = x[k - 1];
-        x[k] = v;
-    }
-    for (size_t i = 0; i + 1 < n; i += 2) {
+    unsigned n = gnoi_edges_cross(tile->edges, (unsigned)tile->edge_count, y, x);
+    for (unsigned i = 0; i + 1 < n; i += 2) {
         int32_t x0 = line_position(tile, x[i]), x1 = line_position(tile, x[i + 1]);
         if (x0 < x1)
             gnoi_lines_insert(&tile->lines, line, slot, x0, x1);

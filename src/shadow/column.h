@@ -14,6 +14,7 @@
 #define GNOI_SHADOW_COLUMN_H
 
 #include "project/clip3.h"
+#include "project/edge.h"
 #include "project/view.h"
 #include "shadow/tree.h"
 
@@ -23,13 +24,6 @@ typedef enum gnoi_column_state {
     GNOI_COLUMN_DARK,  /* in its own shadow, or one opaque caster covers the region */
     GNOI_COLUMN_SPLIT  /* spans must be split */
 } gnoi_column_state;
-
-/* An edge of a polygon in picture coordinates, from its upper end (x,y) down to y1; crosses lines y <= line < y1. */
-typedef struct gnoi_edge {
-    double x, y, y1, slope;
-} gnoi_edge;
-
-static inline double gnoi_edge_at(const gnoi_edge *e, double y) { return e->x + (y - e->y) * e->slope; }
 
 typedef struct gnoi_caster {
     float y0, y1;      /* lines that may cross it */

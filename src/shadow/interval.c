@@ -1,0 +1,126 @@
+/* interval.c -- where a sample line meets the shadow polygons of a column, and the dark outside of a spot's cone: see column.h. */
+#include "shadow/pair.h"
+
+int gnoi_region_row(const gnoi_receiver *r, double y)
+{
+    double first = floor(r->y0);
+    int last = (int)(floor(r->y1) - first);
+    return y <= first ? 0 : y >= first + last ? last : (int)(y - first);
+}
+
+/* ---- spot cones --------------------------------------------------------------------------------------------------- */
+
+static int in_cone(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *r, double x, double y)
+{
+    double z = gnoi_plane_at(&r->nearness, x, y);
+    vec3 v;
+    if (!view->orthographic && !(z > 0))
+        return 0;
+    v = v3_sub(gnoi_view_point(view, x, y, z), lamp->position);
+    return v3_dot(v, lamp->axis) >= lamp->cos_half_angle * v3_length(v);
+}
+
+static int add_interval(gnoi_columns *columns, double x0, double x1, const double *transmission)
+{
+    gno_shadow_interval *s;
+    if (columns->interval_count == columns->interval_capacity &&
+        !gnoi_reserve(columns->context, (void **)&columns->intervals, &columns->interval_capacity, columns->interval_count + 1,
+                      sizeof *columns->intervals))
+        return 0;
+    s = &columns->intervals[columns->interval_count++];
+    s->x0 = x0;
+    s->x1 = x1;
+    for (int k = 0; k < 3; k++)
+        s->transmission[k] = transmission ? transmission[k] : 0;
+    return 1;
+}
+
+/* Roots in (xa,xb) of the quadratic through the cone's boundary: with V = (P - light) scaled to be linear in x,
+ * (V.axis)^2 = cos^2 V.V. */
+static int cone_roots(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *r, double y, double xa, double xb,
+                      double roots[2])
+{
+    double za = gnoi_plane_at(&r->nearness, xa, y), zb = gnoi_plane_at(&r->nearness, xb, y), c2, a, b, c, disc, q, t[2];
+    vec3 va, vb, dv;
+    int n = 0;
+    if (!view->orthographic && (!(za > 0) || !(zb > 0)))
+        return 0;
+    va = v3_sub(gnoi_view_point(view, xa, y, za), lamp->position);
+    vb = v3_sub(gnoi_view_point(view, xb, y, zb), lamp->position);
+    if (!view->orthographic) {
+        va = v3_scale(va, za);
+        vb = v3_scale(vb, zb);
+    }
+    dv = v3_sub(vb, va);
+    c2 = lamp->cos_half_angle * lamp->cos_half_angle;
+    a = v3_dot(dv, lamp->axis) * v3_dot(dv, lamp->axis) - c2 * v3_dot(dv, dv);
+    b = v3_dot(va, lamp->axis) * v3_dot(dv, lamp->axis) - c2 * v3_dot(va, dv);
+    c = v3_dot(va, lamp->axis) * v3_dot(va, lamp->axis) - c2 * v3_dot(va, va);
+    disc = b * b - a * c;
+    if (!(disc > 0))
+        return 0;
+    q = -(b + (b < 0 ? -sqrt(disc) : sqrt(disc)));
+    t[0] = a != 0 ? q / a : -1;
+    t[1] = q != 0 ? c / q : -1;
+    if (t[0] > t[1]) {
+        double swap = t[0];
+        t[0] = t[1];
+        t[1] = swap;
+    }
+    for (int i = 0; i < 2; i++)
+        if (t[i] > 0 && t[i] < 1)
+            roots[n++] = xa + t[i] * (xb - xa);
+    return n;
+}
+
+static int add_cone_intervals(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *r, double y, double xa, double xb,
+                              gnoi_columns *columns)
+{
+    double ends[4];
+    int n = cone_roots(view, lamp, r, y, xa, xb, ends + 1);
+    ends[0] = xa;
+    ends[n + 1] = xb;
+    for (int i = 0; i <= n; i++)
+        if (!in_cone(view, lamp, r, 0.5 * (ends[i] + ends[i + 1]), y) && !add_interval(columns, ends[i], ends[i + 1], NULL))
+            return 0;
+    return 1;
+}
+
+/* Where line y crosses the caster between xa and xb, in pairs (even-odd filling). */
+static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double y, double xa, double xb, gnoi_columns *columns)
+{
+    const gno_material *m = &scene->materials[c->material];
+    double *x = columns->crossings;
+    uint32_t n = gnoi_edges_cross(columns->edges + c->edge, c->edge_count, y, x);
+    for (uint32_t i = 0; i + 1 < n; i += 2)
+        if (x[i] < x[i + 1] && x[i] < xb && x[i + 1] > xa && !add_interval(columns, x[i], x[i + 1], m->transmission))
+            return 0;
+    return 1;
+}
+
+int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver,
+                          const gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
+{
+    float fy = (float)y;
+    uint32_t count = column->caster_count;
+    const uint32_t *listed = NULL;
+    if (column->rows != GNOI_NONE) {
+        const uint32_t *start = columns->rows.items + column->rows;
+        int row = gnoi_region_row(receiver, y), rows = gnoi_region_row(receiver, receiver->y1) + 1;
+        listed = start + rows + 1 + start[row];
+        count = start[row + 1] - start[row];
+    }
+    columns->interval_count = 0;
+    for (uint32_t i = 0; i < count; i++) {
+        const gnoi_caster *c = &columns->casters[listed ? listed[i] : column->caster + i];
+        if (fy < c->y0 || fy > c->y1)
+            continue;
+        if (c->edge_count > columns->crossing_capacity &&
+            !gnoi_reserve(columns->context, (void **)&columns->crossings, &columns->crossing_capacity, c->edge_count,
+                          sizeof *columns->crossings))
+            return 0;
+        if (!caster_intervals(scene, c, y, xa, xb, columns))
+            return 0;
+    }
+    return !lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns);
+}
