@@ -96,19 +96,18 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb
     gno_status status;
     int threads = gnoi_thread_count(def->threads);
     double t = gnoi_now(), start = t;
-    vec3 eye = v3_from(scene->camera.eye);
     memset(&frame, 0, sizeof frame);
     status = gnoi_scene_prepare(scene, threads);
     stats->prepare_seconds = lap(&t);
     if (status)
         return status;
-    status = gnoi_shadow_cache_build(scene, scene->camera.type == GNO_CAMERA_ORTHOGRAPHIC ? NULL : &eye, threads);
+    frame.view = gnoi_view_make(&scene->camera, &scene->image, scene->prepared.scale);
+    status = gnoi_shadow_cache_build(scene, &frame.view, threads);
     stats->shadow_seconds = lap(&t);
     if (status)
         return status;
     frame.scene = scene;
     frame.def = *def;
-    frame.view = gnoi_view_make(&scene->camera, &scene->image, scene->prepared.scale);
     frame.lamps = scene->shadows->lamps;
     frame.trees = scene->shadows->trees;
     frame.lamp_count = (int)scene->shadows->lamp_count;

@@ -46,7 +46,7 @@ typedef struct gnoi_poly {
 
 #define GNOI_NONE 0xffffffffu
 
-/* What is known of polygons that hang together by their vertices. `closed`: they are opaque, without holes, and every edge is passed as often one way
+/* What is known of polygons that hang together by their vertices. `closed`: they are opaque, seen from both sides, without holes, and every edge is passed as often one way
  * as the other, so that a path that begins and ends outside crosses as many polygons inwards as outwards. */
 typedef struct gnoi_solid {
     int closed;

@@ -109,7 +109,7 @@ static void add_prepared(const gno_scene *scene, balance *balances)
         const gnoi_poly *poly = &prep->polys[i];
         uint32_t solid = gnoi_solid_of(prep, poly);
         vec3 first = v3_from(prep->positions[prep->corner_vertex[poly->corner]]), sum = v3(0, 0, 0), before = v3(0, 0, 0);
-        balances[solid].open |= !poly->opaque;
+        balances[solid].open |= !poly->opaque || !poly->two_sided;
         grow_bounds(&prep->solids[solid], prep->positions[prep->corner_vertex[poly->corner]]);
         for (uint32_t k = 1; k < poly->corner_count; k++) {
             const double *p = prep->positions[prep->corner_vertex[poly->corner + k]];

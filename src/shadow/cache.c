@@ -67,16 +67,25 @@ static gno_status build_tree(void *user, int worker, size_t piece)
                            &j->cache->trees[piece]);
 }
 
-static int eye_outside(const gno_scene *scene, size_t solid, const vec3 *eye)
+/* Whether all that is in sight is seen from outside the solid: an orthographic view begins at a plane, which must not cut it. */
+static int eye_outside(const gno_scene *scene, size_t solid, const gnoi_view *view)
 {
-    return !eye || gnoi_solid_outside(scene, solid, *eye);
+    const gnoi_solid *s = &scene->prepared.solids[solid];
+    if (!view->orthographic)
+        return gnoi_solid_outside(scene, solid, view->eye);
+    for (int i = 0; i < 8; i++) {
+        vec3 p = v3(i & 1 ? s->upper[0] : s->lower[0], i & 2 ? s->upper[1] : s->lower[1], i & 4 ? s->upper[2] : s->lower[2]);
+        if (!(gnoi_form_at(&view->depth, p) > view->near_depth))
+            return 0;
+    }
+    return 1;
 }
 
 /* Finds which closed solids have lamp and eye outside. */
-static void set_halved(const gno_scene *scene, const vec3 *eye, gnoi_shadow_cache *cache)
+static void set_halved(const gno_scene *scene, const gnoi_view *view, gnoi_shadow_cache *cache)
 {
     for (size_t k = 0; k < cache->solid_count; k++) {
-        if (!scene->prepared.solids[k].closed || !eye_outside(scene, k, eye))
+        if (!scene->prepared.solids[k].closed || !eye_outside(scene, k, view))
             continue;
         for (size_t i = 0; i < cache->lamp_count; i++) {
             const gnoi_lamp *lamp = &cache->lamps[i];
@@ -85,27 +94,27 @@ static void set_halved(const gno_scene *scene, const vec3 *eye, gnoi_shadow_cach
     }
 }
 
-static int still_serves(const gno_scene *scene, const vec3 *eye)
+static int still_serves(const gno_scene *scene, const gnoi_view *view)
 {
     const gnoi_shadow_cache *cache = scene->shadows;
     for (size_t k = 0; k < cache->solid_count; k++) {
         int used = 0;
         for (size_t i = 0; i < cache->lamp_count; i++)
             used |= cache->halved[i * cache->solid_count + k];
-        if (used && !eye_outside(scene, k, eye))
+        if (used && !eye_outside(scene, k, view))
             return 0;
     }
     return 1;
 }
 
-gno_status gnoi_shadow_cache_build(gno_scene *scene, const vec3 *eye, int threads)
+gno_status gnoi_shadow_cache_build(gno_scene *scene, const gnoi_view *view, int threads)
 {
     gno_context *context = scene->context;
     gnoi_shadow_cache *cache;
     gno_status status = GNO_ERROR_MEMORY;
     size_t n = 0;
     job j;
-    if (scene->shadows && still_serves(scene, eye))
+    if (scene->shadows && still_serves(scene, view))
         return GNO_OK;
     if (scene->shadows) {
         free_cache(context, scene->shadows);
@@ -135,7 +144,7 @@ gno_status gnoi_shadow_cache_build(gno_scene *scene, const vec3 *eye, int thread
                 cache->lamps[n] = lamp_from(light);
             n += lamps_of(light);
         }
-        set_halved(scene, eye, cache);
+        set_halved(scene, view, cache);
         j.scene = scene;
         j.cache = cache;
         status = gnoi_parallel(context, threads, cache->lamp_count, "shadow matrix", build_tree, &j);

@@ -6,6 +6,7 @@
 #ifndef GNOI_SHADOW_CACHE_H
 #define GNOI_SHADOW_CACHE_H
 
+#include "project/view.h"
 #include "shadow/tree.h"
 
 struct gnoi_shadow_cache {
@@ -17,7 +18,7 @@ struct gnoi_shadow_cache {
 };
 
 /* Fills scene->shadows if need be; the scene must be prepared. What is there serves while the eye stays outside the closed
- * solids that were halved; else it is built anew without them. eye NULL: an eye at infinity. */
-gno_status gnoi_shadow_cache_build(gno_scene *scene, const vec3 *eye, int threads);
+ * solids that were halved; else it is built anew without them. */
+gno_status gnoi_shadow_cache_build(gno_scene *scene, const gnoi_view *view, int threads);
 
 #endif
