@@ -135,6 +135,8 @@ static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
     r->x1 = clamp(o->x1, tile->x0, x1);
     r->y0 = clamp(o->y0, tile->y0 - 0.5, y1);
     r->y1 = clamp(o->y1, tile->y0 - 0.5, y1);
+    r->first_row = (int)floor(r->y0);
+    r->rows = (int)floor(r->y1) - r->first_row + 1;
     r->whole = !o->cut && r->x0 == o->x0 && r->x1 == o->x1 && r->y0 == o->y0 && r->y1 == o->y1;
     depth->fx = r->nearness.fx / GNOI_X_ONE;
     depth->fy = r->nearness.fy;

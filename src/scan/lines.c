@@ -29,6 +29,8 @@ void gnoi_lines_add(gnoi_lines *lines, double y, int32_t xa, int32_t xb)
     l->uncovered = xb - xa;
     l->farthest = HUGE_VALF;
     l->first = 0;
+    for (int i = 0; i < GNOI_LINE_MARKS; i++)
+        l->near[i] = 0;
 }
 
 /* A new piece; when memory fails the sink, whose links lead nowhere. */
@@ -113,16 +115,12 @@ static int compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x
     return in_front(a, b, y, x0, x1, cut, a_first);
 }
 
-/* Replaces [u,v) of piece p by slot. `before` precedes p. Returns the last piece ending at or before v. */
+/* Replaces [u,v) of piece p by slot. `before` precedes p. Returns the last piece ending at or before v. No piece is taken out
+ * of the line, or marks would lead astray. */
 static uint32_t replace_part(gnoi_lines *lines, uint32_t line, uint32_t before, uint32_t p, uint32_t slot, int32_t u, int32_t v)
 {
     gnoi_piece old = lines->pieces[p];
     if (u == old.x0 && v == old.x1) {
-        if (before && lines->pieces[before].slot == slot && lines->pieces[before].x1 == u) {
-            lines->pieces[before].x1 = v;
-            lines->pieces[before].next = old.next;
-            return before;
-        }
         lines->pieces[p].slot = slot;
         return p;
     }
@@ -144,17 +142,30 @@ static int take_gap(gnoi_lines *lines, uint32_t line, uint32_t *before, uint32_t
     return *before != 0;
 }
 
+/* The last piece that ends at or before x0, 0 when there is none. */
+static uint32_t search_from(gnoi_lines *lines, gnoi_line *l, int32_t x0)
+{
+    uint32_t *mark = &l->near[(x0 >> GNOI_MARK_BITS) & (GNOI_LINE_MARKS - 1)], before = *mark, p;
+    if (before && lines->pieces[before].x1 > x0)
+        before = 0;
+    for (p = before ? lines->pieces[before].next : l->first; p && lines->pieces[p].x1 <= x0; p = lines->pieces[p].next)
+        before = p;
+    if (before)
+        *mark = before;
+    return before;
+}
+
 int gnoi_lines_insert(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x0, int32_t x1)
 {
     gnoi_line *l = &lines->lines[line];
-    uint32_t before = 0, p = l->first;
+    uint32_t before, p;
     int visible = 0;
     x0 = x0 < l->xa ? l->xa : x0;
     x1 = x1 > l->xb ? l->xb : x1;
-    while (p && x0 < x1 && lines->pieces[p].x1 <= x0) {
-        before = p;
-        p = lines->pieces[p].next;
-    }
+    if (x0 >= x1)
+        return 0;
+    before = search_from(lines, l, x0);
+    p = before ? lines->pieces[before].next : l->first;
     while (x0 < x1 && !lines->failed) {
         int32_t u, v, cut = 0;
         int front, new_first = 0;

@@ -6,7 +6,7 @@
  * Rules: the nearer surface is kept; where two cross inside their overlap the piece is cut there; where they lie on each
  * other (nearer to each other's plane than the tolerance over the whole overlap) the higher priority wins, then the lower polygon number.
  * Invariants of a line: pieces ascend, do not overlap, have x0 < x1 and lie in [xa,xb); `uncovered` is what they
- * leave free; no piece is farther than `farthest`.
+ * leave free; no piece is farther than `farthest`. A piece stays in its line for good, though it may shrink or change hands.
  */
 #ifndef GNOI_SCAN_LINES_H
 #define GNOI_SCAN_LINES_H
@@ -16,6 +16,10 @@
 
 #define GNOI_X_BITS 16
 #define GNOI_X_ONE 65536
+
+/* A line is searched from the last place looked at in the same stretch of 2^GNOI_MARK_BITS units. */
+#define GNOI_MARK_BITS (GNOI_X_BITS + 3)
+#define GNOI_LINE_MARKS 4
 
 /* A surface's nearness over the tile and what decides when two lie on each other. */
 typedef struct gnoi_depth {
@@ -42,6 +46,7 @@ typedef struct gnoi_line {
     int32_t uncovered;
     float farthest;
     uint32_t first; /* 0: none */
+    uint32_t near[GNOI_LINE_MARKS]; /* by stretch of the line, a piece that ended before where a search there began; 0: none */
 } gnoi_line;
 
 typedef struct gnoi_lines {

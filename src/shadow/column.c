@@ -173,7 +173,7 @@ static void caster_rows(const gnoi_receiver *r, const gnoi_caster *c, int *first
 /* Lists a long column's casters by the rows that they may cross, so that a line looks at those of its row only. */
 static int sort_into_rows(const gnoi_receiver *r, gnoi_columns *columns, gnoi_column *column)
 {
-    size_t rows = (size_t)gnoi_region_row(r, r->y1) + 1, need = rows + 1;
+    size_t rows = (size_t)r->rows, need = rows + 1;
     const gnoi_caster *casters = columns->casters + column->caster;
     uint32_t *start;
     int first, last;

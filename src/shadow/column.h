@@ -70,6 +70,7 @@ typedef struct gnoi_receiver {
     gnoi_screen_plane nearness;
     double tolerance;         /* distance from its plane within which things lie on it */
     double x0, y0, x1, y1;    /* picture region that holds the visible part */
+    int first_row, rows;      /* pixel rows of the region */
     int whole;                /* the polygon lies wholly inside the region, before the near plane */
 } gnoi_receiver;
 

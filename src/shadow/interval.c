@@ -1,13 +1,6 @@
 /* interval.c -- where a sample line meets the shadow polygons of a column, and the dark outside of a spot's cone: see column.h. */
 #include "shadow/pair.h"
 
-int gnoi_region_row(const gnoi_receiver *r, double y)
-{
-    double first = floor(r->y0);
-    int last = (int)(floor(r->y1) - first);
-    return y <= first ? 0 : y >= first + last ? last : (int)(y - first);
-}
-
 /* ---- spot cones --------------------------------------------------------------------------------------------------- */
 
 static int in_cone(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *r, double x, double y)
@@ -106,8 +99,8 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
     const uint32_t *listed = NULL;
     if (column->rows != GNOI_NONE) {
         const uint32_t *start = columns->rows.items + column->rows;
-        int row = gnoi_region_row(receiver, y), rows = gnoi_region_row(receiver, receiver->y1) + 1;
-        listed = start + rows + 1 + start[row];
+        int row = gnoi_region_row(receiver, y);
+        listed = start + receiver->rows + 1 + start[row];
         count = start[row + 1] - start[row];
     }
     columns->interval_count = 0;

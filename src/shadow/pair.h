@@ -37,6 +37,10 @@ static inline vec3 gnoi_corner_position(const gno_scene *scene, uint32_t corner)
 }
 
 /* Pixel row of the receiver's region, for sorting casters; rows beyond it are its first and last. */
-int gnoi_region_row(const gnoi_receiver *r, double y);
+static inline int gnoi_region_row(const gnoi_receiver *r, double y)
+{
+    double row = y - r->first_row;
+    return row < 0 ? 0 : row >= r->rows ? r->rows - 1 : (int)row;
+}
 
 #endif
