@@ -52,7 +52,9 @@ static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
 void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count)
 {
     gno_context *context = tile->lines.context;
-    if (!gnoi_reserve(context, (void **)&tile->order, &tile->order_capacity, count, sizeof *tile->order) ||
+    if (!gnoi_reserve(context, (void **)&tile->edges, &tile->edge_capacity, 3, sizeof *tile->edges) ||
+        !gnoi_reserve(context, (void **)&tile->crossings, &tile->crossing_capacity, 3, sizeof *tile->crossings) ||
+        !gnoi_reserve(context, (void **)&tile->order, &tile->order_capacity, count, sizeof *tile->order) ||
         !gnoi_reserve(context, (void **)&tile->order_scratch, &tile->order_scratch_capacity, count, sizeof *tile->order_scratch) ||
         !gnoi_reserve(context, (void **)&tile->items, &tile->item_capacity, count, sizeof *tile->items)) {
         tile->failed = 1;
@@ -168,6 +170,43 @@ static int set_edges(gnoi_tile *tile)
     return 1;
 }
 
+static double least(double a, double b, double c) { return a < b ? (a < c ? a : c) : (b < c ? b : c); }
+static double most(double a, double b, double c) { return a > b ? (a > c ? a : c) : (b > c ? b : c); }
+
+/* Outline and edges of a triangle that needs no cutting, without the detour over rings. */
+static void set_triangle(gnoi_tile *tile, const gnoi_poly *poly)
+{
+    const uint32_t *corner = tile->job->scene->prepared.corner_vertex + poly->corner;
+    const gnoi_vertex *a = &tile->job->bins.vertices[corner[0]], *b = &tile->job->bins.vertices[corner[1]],
+                      *c = &tile->job->bins.vertices[corner[2]];
+    gnoi_outline *o = &tile->outline;
+    size_t n = 0;
+    o->x0 = least(a->x, b->x, c->x);
+    o->x1 = most(a->x, b->x, c->x);
+    o->y0 = least(a->y, b->y, c->y);
+    o->y1 = most(a->y, b->y, c->y);
+    o->z0 = (float)least((double)a->z, (double)b->z, (double)c->z);
+    o->z1 = (float)most((double)a->z, (double)b->z, (double)c->z);
+    o->cut = 0;
+    n += (size_t)gnoi_edge_set(&tile->edges[n], a->x, a->y, b->x, b->y);
+    n += (size_t)gnoi_edge_set(&tile->edges[n], b->x, b->y, c->x, c->y);
+    n += (size_t)gnoi_edge_set(&tile->edges[n], c->x, c->y, a->x, a->y);
+    tile->edge_count = n;
+}
+
+/* Outline and edges of any polygon; 0 when nothing of it can be seen or memory fails. */
+static int set_polygon(gnoi_tile *tile, const gnoi_poly *poly)
+{
+    if (!gnoi_outline_set(&tile->outline, tile->job->scene, &tile->job->view, tile->job->bins.vertices, poly)) {
+        tile->failed = 1;
+        return 0;
+    }
+    if (tile->outline.count < 3)
+        return 0;
+    tile->failed |= !set_edges(tile);
+    return !tile->failed;
+}
+
 /* Truncation instead of floor: what is added makes the number positive. */
 static int32_t line_position(const gnoi_tile *tile, double x)
 {
@@ -215,20 +254,14 @@ static void draw_item(gnoi_tile *tile, gnoi_item *item, uint32_t index)
         ;
     if (line == end)
         return;
-    if (!gnoi_outline_set(&tile->outline, tile->job->scene, &tile->job->view, tile->job->bins.vertices, poly)) {
-        tile->failed = 1;
-        return;
-    }
-    if (tile->outline.count < 3)
+    if (item->plain)
+        set_triangle(tile, poly);
+    else if (!set_polygon(tile, poly))
         return;
     if (item->slot == GNOI_NONE)
         item->slot = new_slot(tile, index);
     if (item->slot == GNOI_NONE)
         return;
-    if (!set_edges(tile)) {
-        tile->failed = 1;
-        return;
-    }
     bound = tile->lines.depths[item->slot].surely_before;
     for (; line < end; line++)
         if (is_open(tile, &tile->lines.lines[line], item, bound))
