@@ -59,6 +59,7 @@ static void start_tile(gnoi_tile *tile, size_t index)
     memset(tile->acc, 0, sizeof tile->acc);
     memset(tile->weight, 0, sizeof tile->weight);
     memset(tile->line_acc, 0, sizeof tile->line_acc);
+    memset(tile->thin, 0, sizeof tile->thin);
 }
 
 /* Lines y = (i + 1/2) / base in every row; the rows of the apron have only the one next to the tile. */
@@ -116,7 +117,7 @@ static int plan_refinement(gnoi_tile *tile)
         int run = -1, last = 0;
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
         for (int x = 0; x < tile->width; x++) {
-            if (!bends(tile, row * GNOI_TILE_W + x))
+            if (!tile->thin[row * GNOI_TILE_W + x] && !bends(tile, row * GNOI_TILE_W + x))
                 continue;
             if (run >= 0 && x - last > RUN_GAP) {
                 add_fine_lines(tile, row, run, last);

@@ -43,6 +43,7 @@ typedef struct gnoi_item {
     float x0, x1, y0, y1, z1;
     uint32_t slot;
     int plain; /* a triangle that needs no cutting */
+    int thin;  /* nearly level and flatter than the base lines are apart: they may miss it over many pixels */
 } gnoi_item;
 
 /* A surface seen in the tile. */
@@ -98,6 +99,7 @@ typedef struct gnoi_tile {
     float acc[3][GNOI_TILE_PIXELS];        /* sums over lines */
     float weight[GNOI_TILE_PIXELS];        /* lines that cover the pixel */
     float line_acc[GNOI_BASE_LINES][3][GNOI_TILE_PIXELS]; /* the pixel's colour on each base line */
+    unsigned char thin[GNOI_TILE_PIXELS];  /* something thin passes: to be refined whatever the base lines saw */
     float cover_by_line[GNOI_BASE_LINES][GNOI_BATCH]; /* beside the batch */
     double spans, shaded, refined;
 } gnoi_tile;
@@ -112,6 +114,9 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index);
 /* tile_scan.c: prepares the order of the bin's polygons; draws them into the lines. */
 void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count);
 void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
+
+/* tile_scan.c: marks the pixels along nearly level edges as having something thin. */
+void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count);
 
 /* tile_light.c: finds the columns of the surfaces seen on the tile's lines. */
 void gnoi_tile_light(gnoi_tile *tile);

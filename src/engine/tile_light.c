@@ -5,6 +5,7 @@
 
 /* Side of the blocks by which surfaces are put in order, in pixels. */
 #define BLOCK 8
+#define FEW_CASTERS 4
 #define BLOCKS (((GNOI_TILE_W + BLOCK - 1) / BLOCK) * ((GNOI_TILE_ROWS + BLOCK - 1) / BLOCK))
 
 static int reserve(gnoi_tile *tile)
@@ -54,11 +55,27 @@ static const uint32_t *order_by_block(gnoi_tile *tile, size_t count)
     return ordered;
 }
 
+/* Marks where thin shadow polygons of the new columns pass, as tile_scan.c does for thin polygons. In a long column they are
+ * parts of one large shadow, as the triangles of a mesh throw it. */
+static void mark_thin_shadows(gnoi_tile *tile, size_t first_column)
+{
+    for (size_t i = first_column; i < tile->column_count; i++) {
+        const gnoi_column *column = &tile->columns[i];
+        if (column->state != GNOI_COLUMN_SPLIT || column->caster_count > FEW_CASTERS)
+            continue;
+        for (uint32_t k = 0; k < column->caster_count; k++) {
+            const gnoi_caster *c = &tile->store.casters[column->caster + k];
+            if (c->area > 0 && c->area * (float)tile->job->def.base_lines < c->x1 - c->x0)
+                gnoi_tile_mark_thin(tile, tile->store.edges + c->edge, c->edge_count);
+        }
+    }
+}
+
 void gnoi_tile_light(gnoi_tile *tile)
 {
     const gnoi_frame_job *job = tile->job;
     const uint32_t *ordered;
-    size_t count;
+    size_t count, first_column = tile->column_count;
     if (!reserve(tile)) {
         tile->failed = 1;
         return;
@@ -73,4 +90,6 @@ void gnoi_tile_light(gnoi_tile *tile)
         }
         tile->failed |= !gnoi_columns_finish(&job->view, &job->trees[j], &tile->store);
     }
+    if (tile->judging && !tile->failed)
+        mark_thin_shadows(tile, first_column);
 }

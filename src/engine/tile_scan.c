@@ -19,6 +19,45 @@ static uint32_t descending_key(float z)
     return u.i & 0x80000000u ? u.i : ~u.i & 0x7fffffffu;
 }
 
+/* A polygon counts as thin from this width on, in pixels, and while it rises by less than this share of it. */
+#define THIN_WIDTH 6.0
+#define THIN_SLOPE 0.5
+
+static int is_thin(const gnoi_tile *tile, const gnoi_poly *poly, double width, double height)
+{
+    const gnoi_prepared *prep = &tile->job->scene->prepared;
+    const uint32_t *vertex = prep->corner_vertex;
+    uint32_t end = prep->ring_corner[poly->ring + 1];
+    const gnoi_vertex *a = &tile->job->bins.vertices[vertex[poly->corner]];
+    double area = 0;
+    if (width < THIN_WIDTH || height > THIN_SLOPE * width + 1)
+        return 0;
+    for (uint32_t i = poly->corner + 1; i + 1 < end; i++) {
+        const gnoi_vertex *b = &tile->job->bins.vertices[vertex[i]], *c = &tile->job->bins.vertices[vertex[i + 1]];
+        area += 0.5 * ((b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x));
+    }
+    return fabs(area) * tile->job->def.base_lines < width;
+}
+
+void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count)
+{
+    for (size_t i = 0; i < count; i++) {
+        const gnoi_edge *e = &edges[i];
+        double x1 = e->x + (e->y1 - e->y) * e->slope, left = (e->x < x1 ? e->x : x1) - tile->x0, right = (e->x < x1 ? x1 : e->x) - tile->x0;
+        int first, last;
+        if (right - left < THIN_WIDTH || fabs(e->slope) * THIN_SLOPE < 1)
+            continue;
+        first = (int)(left > 0 ? left : 0);
+        last = right < tile->width ? (int)right : tile->width - 1;
+        for (int x = first; x <= last; x++) {
+            double at = tile->x0 + x + 0.5, y = e->y + (at - e->x) / e->slope - tile->y0 + 1;
+            y = y < e->y - tile->y0 + 1 ? e->y - tile->y0 + 1 : y > e->y1 - tile->y0 + 1 ? e->y1 - tile->y0 + 1 : y;
+            if (y >= 1 && y < tile->height + 1)
+                tile->thin[(int)y * GNOI_TILE_W + x] = 1;
+        }
+    }
+}
+
 /* Bounds of a polygon in the picture; everything for one that must be cut first. */
 static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
 {
@@ -27,6 +66,7 @@ static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
     gnoi_item item;
     item.z1 = -HUGE_VALF;
     item.slot = GNOI_NONE;
+    item.thin = 0;
     for (uint32_t i = 0; i < poly->corner_count; i++) {
         const gnoi_vertex *v = &tile->job->bins.vertices[vertex[i]];
         x0 = v->x < x0 ? v->x : x0;
@@ -42,6 +82,7 @@ static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
         return item;
     }
     item.plain = poly->corner_count == 3;
+    item.thin = tile->job->def.lines > tile->job->def.base_lines && is_thin(tile, poly, x1 - x0, y1 - y0);
     item.x0 = (float)(x0 - tile->x0) - BOUND_SLACK;
     item.x1 = (float)(x1 - tile->x0) + BOUND_SLACK;
     item.y0 = (float)(y0 - tile->y0) - BOUND_SLACK;
@@ -194,17 +235,12 @@ static void set_triangle(gnoi_tile *tile, const gnoi_poly *poly)
     tile->edge_count = n;
 }
 
-/* Outline and edges of any polygon; 0 when nothing of it can be seen or memory fails. */
-static int set_polygon(gnoi_tile *tile, const gnoi_poly *poly)
+/* Outline and edges of any polygon; no edges when nothing of it can be seen or memory fails. */
+static void set_polygon(gnoi_tile *tile, const gnoi_poly *poly)
 {
-    if (!gnoi_outline_set(&tile->outline, tile->job->scene, &tile->job->view, tile->job->bins.vertices, poly)) {
+    if (!gnoi_outline_set(&tile->outline, tile->job->scene, &tile->job->view, tile->job->bins.vertices, poly) ||
+        (tile->outline.count >= 3 && !set_edges(tile)))
         tile->failed = 1;
-        return 0;
-    }
-    if (tile->outline.count < 3)
-        return 0;
-    tile->failed |= !set_edges(tile);
-    return !tile->failed;
 }
 
 /* Truncation instead of floor: what is added makes the number positive. */
@@ -243,6 +279,30 @@ static void line_range(const gnoi_tile *tile, const gnoi_item *item, uint32_t *f
     *end = item->y1 + 1 < 0 || r1 < r0 ? *first : tile->row_line[r1 + 1];
 }
 
+static void set_outline(gnoi_tile *tile, const gnoi_item *item, const gnoi_poly *poly)
+{
+    tile->edge_count = 0;
+    if (item->plain)
+        set_triangle(tile, poly);
+    else
+        set_polygon(tile, poly);
+}
+
+/* Marks where a thin polygon passes that the lines around it do not show to be hidden. */
+static void judge_thin(gnoi_tile *tile, const gnoi_item *item, const gnoi_poly *poly)
+{
+    gnoi_item around = *item;
+    uint32_t line, end;
+    around.y0 -= 1;
+    around.y1 += 1;
+    for (line_range(tile, &around, &line, &end); line < end; line++)
+        if (is_open(tile, &tile->lines.lines[line], &around, item->z1)) {
+            set_outline(tile, item, poly);
+            gnoi_tile_mark_thin(tile, tile->edges, tile->edge_count);
+            return;
+        }
+}
+
 static void draw_item(gnoi_tile *tile, gnoi_item *item, uint32_t index)
 {
     const gnoi_poly *poly = &tile->job->scene->prepared.polys[index];
@@ -250,13 +310,14 @@ static void draw_item(gnoi_tile *tile, gnoi_item *item, uint32_t index)
     float bound = item->z1 + FLOAT_SLACK * fabsf(item->z1);
     if (!(item->x1 > 0) || !(item->x0 < (float)tile->width))
         return;
+    if (item->thin && tile->judging)
+        judge_thin(tile, item, poly);
     for (line_range(tile, item, &line, &end); line < end && !is_open(tile, &tile->lines.lines[line], item, bound); line++)
         ;
     if (line == end)
         return;
-    if (item->plain)
-        set_triangle(tile, poly);
-    else if (!set_polygon(tile, poly))
+    set_outline(tile, item, poly);
+    if (tile->edge_count == 0)
         return;
     if (item->slot == GNOI_NONE)
         item->slot = new_slot(tile, index);

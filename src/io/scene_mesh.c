@@ -105,7 +105,7 @@ static gno_status load_mesh(gno_context *context, const char *path, const mesh_v
 static int choose_up(const char *path, const double extent[3])
 {
     if (gnoi_has_extension(path, ".stl")) return 2;
-    return extent[2] < 0.5 * extent[0] && extent[2] < 0.5 * extent[1] ? 2 : 1;
+    return extent[2] < 0.55 * extent[0] && extent[2] < 0.55 * extent[1] ? 2 : 1;
 }
 
 static void make_frame(const gno_scene *scene, const char *path, int up, frame *f)

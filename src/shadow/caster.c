@@ -179,6 +179,16 @@ static int add_ring_edges(ring_points *r, extent *e, gnoi_columns *columns)
     return 1;
 }
 
+static double ring_area(const ring_points *r)
+{
+    double area = 0;
+    for (size_t i = 1; i + 1 < r->count; i++) {
+        const gnoi_hpoint *a = &r->now[0], *b = &r->now[i], *c = &r->now[i + 1];
+        area += 0.5 * ((b->x - a->x) * (c->y - a->y) - (b->y - a->y) * (c->x - a->x));
+    }
+    return fabs(area);
+}
+
 typedef struct point2 {
     double x, y;
 } point2;
@@ -298,5 +308,8 @@ gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t ind
     c->edge = (uint32_t)first_edge;
     c->edge_count = (uint32_t)(columns->edge_count - first_edge);
     c->material = caster->material;
+    c->x0 = (float)e.x0;
+    c->x1 = (float)e.x1;
+    c->area = caster->ring_count == 1 ? (float)ring_area(&r) : 0;
     return GNOI_FOUND_PART;
 }

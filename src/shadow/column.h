@@ -29,6 +29,7 @@ typedef struct gnoi_caster {
     float y0, y1;      /* lines that may cross it */
     uint32_t edge, edge_count;
     uint32_t material; /* for its transmission */
+    float x0, x1, area; /* extent and area of the shadow polygon, 0 where it has holes */
 } gnoi_caster;
 
 typedef struct gnoi_column {
