@@ -277,7 +277,7 @@ GNO_API gno_status gno_scene_prepare(gno_scene *scene, int threads, gno_scene_pr
 
 typedef enum gno_terminator {
     GNO_TERMINATOR_EXACT = 0, /* shadows as the flat facets cast them */
-    GNO_TERMINATOR_SMOOTH = 1 /* smooth-shaded polygons: Chiang, Li and Burley 2019, see docs/algorithm.md */
+    GNO_TERMINATOR_SMOOTH = 1 /* phong-shaded polygons fade before the facets show: Chiang, Li and Burley 2019, see docs/algorithm.md */
 } gno_terminator;
 
 typedef struct gno_render_def {

@@ -2,8 +2,8 @@
 #ifndef GNOI_BASE_TOLERANCE_H
 #define GNOI_BASE_TOLERANCE_H
 
-/* Share of the scene's largest coordinate extent (with its offset from the origin): points of two planes nearer than this
- * lie on one plane. Model files carry 6 to 7 significant digits, so faces meant to be coplanar differ by some 1e-7, and the
+/* Share of a polygon's reach (its farthest corner's distance from the scene's middle, along an axis): what is nearer than this to
+ * its plane lies on it. Model files carry 6 to 7 significant digits, so faces meant to be coplanar differ by some 1e-7, and the
  * plane of a small face, drawn out over a large one, by ten times that. */
 #define GNOI_COPLANAR 4e-6
 
