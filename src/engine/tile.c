@@ -79,16 +79,6 @@ static void add_base_lines(gnoi_tile *tile)
     tile->row_line[rows] = (uint32_t)tile->lines.line_count;
 }
 
-/* The lines between the base lines, over pixels [first,last] of one row. */
-static void add_fine_lines(gnoi_tile *tile, int row, int first, int last)
-{
-    int count = tile->job->def.lines, factor = count / tile->job->def.base_lines;
-    for (int i = 0; i < count; i++)
-        if (i % factor != factor / 2)
-            gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, first * GNOI_X_ONE, (last + 1) * GNOI_X_ONE);
-    tile->refined += last - first + 1;
-}
-
 /* Whether the colour of pixel i bends from line to line by more than the def allows: where it changes evenly the lines'
  * mean is right already. The lines next to the pixel's own, above and below, take part. */
 static int bends(const gnoi_tile *tile, int i)
@@ -108,26 +98,46 @@ static int bends(const gnoi_tile *tile, int i)
     return 0;
 }
 
+typedef struct run {
+    int first, last;
+} run;
+
+/* Runs of pixels of a row that need all lines; returns how many. */
+static int find_runs(const gnoi_tile *tile, int row, run runs[GNOI_TILE_W])
+{
+    int n = 0;
+    for (int x = 0; x < tile->width; x++) {
+        int i = row * GNOI_TILE_W + x;
+        if (!tile->thin[i] && !bends(tile, i))
+            continue;
+        if (n == 0 || x - runs[n - 1].last > RUN_GAP)
+            runs[n++].first = x;
+        runs[n - 1].last = x;
+    }
+    return n;
+}
+
+/* The lines between the base lines over the row's runs. Those at one height follow each other: they meet the same shadows. */
+static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_count)
+{
+    int count = tile->job->def.lines, factor = count / tile->job->def.base_lines;
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < run_count && i % factor != factor / 2; k++)
+            gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, runs[k].first * GNOI_X_ONE,
+                           (runs[k].last + 1) * GNOI_X_ONE);
+    for (int k = 0; k < run_count; k++)
+        tile->refined += runs[k].last - runs[k].first + 1;
+}
+
 /* Adds lines where the colour bends; returns 0 when it does nowhere. */
 static int plan_refinement(gnoi_tile *tile)
 {
     gnoi_lines_reset(&tile->lines);
     tile->row_line[0] = 0;
     for (int row = 1; row <= tile->height; row++) {
-        int run = -1, last = 0;
+        run runs[GNOI_TILE_W];
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
-        for (int x = 0; x < tile->width; x++) {
-            if (!tile->thin[row * GNOI_TILE_W + x] && !bends(tile, row * GNOI_TILE_W + x))
-                continue;
-            if (run >= 0 && x - last > RUN_GAP) {
-                add_fine_lines(tile, row, run, last);
-                run = -1;
-            }
-            run = run < 0 ? x : run;
-            last = x;
-        }
-        if (run >= 0)
-            add_fine_lines(tile, row, run, last);
+        add_fine_lines(tile, row, runs, find_runs(tile, row, runs));
     }
     tile->row_line[tile->height + 1] = tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
     return tile->lines.line_count > 0;

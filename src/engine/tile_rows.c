@@ -62,21 +62,23 @@ static void add_colour(float colour[3][GNOI_TILE_W], float x0, float x1, const d
     }
 }
 
-/* Splits one piece by the column's shadow polygons and adds what is lit. */
-static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, const gnoi_piece *piece, float dy,
-                        int line)
+/* Which of its row's base lines a line is; the one line of the apron above is the last, of the apron below the first. */
+static int base_line(const gnoi_tile *tile, int row, uint32_t line)
 {
-    const gnoi_frame_job *job = tile->job;
+    return row == 0 ? tile->job->def.base_lines - 1 : (int)(line - tile->row_line[row]);
+}
+
+/* How far below the row's middle a line runs, in pixels. */
+static float line_offset(const gnoi_tile *tile, int row, uint32_t line)
+{
+    return (float)(tile->lines.lines[line].y - (tile->y0 + row - 0.5));
+}
+
+/* Splits one piece by the intervals of its line and adds what is lit. */
+static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float dy, int line)
+{
     double x0 = tile->x0 + (double)piece->x0 / GNOI_X_ONE, x1 = tile->x0 + (double)piece->x1 / GNOI_X_ONE;
-    size_t n;
-    if (!gnoi_column_intervals(job->scene, &job->view, &job->lamps[lamp], &slot->receiver, column, tile->lines.lines[piece->line].y, x0,
-                               x1, &tile->store) ||
-        !gnoi_reserve(tile->lines.context, (void **)&tile->parts, &tile->part_capacity, 2 * tile->store.interval_count + 1,
-                      sizeof *tile->parts)) {
-        tile->failed = 1;
-        return;
-    }
-    n = gno_span_split(x0, x1, tile->store.intervals, tile->store.interval_count, tile->parts);
+    size_t n = gno_span_split(x0, x1, tile->store.intervals, tile->store.interval_count, tile->parts);
     for (size_t i = 0; i < n; i++) {
         const gno_span_part *part = &tile->parts[i];
         float a = (float)(part->x0 - tile->x0), b = (float)(part->x1 - tile->x0);
@@ -84,6 +86,33 @@ static void split_piece(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_colum
             continue;
         cells_add(&tile->lit[lamp], a, b, dy, line);
         add_colour(tile->lit_colour[lamp], a, b, part->light);
+    }
+}
+
+/* Finds where the column's shadow polygons meet the tile's stretch of a sample line. */
+static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, double y)
+{
+    const gnoi_frame_job *job = tile->job;
+    return gnoi_column_intervals(job->scene, &job->view, &job->lamps[lamp], &slot->receiver, column, y, tile->x0,
+                                 tile->x0 + tile->width, &tile->store) &&
+           gnoi_reserve(tile->lines.context, (void **)&tile->parts, &tile->part_capacity, 2 * tile->store.interval_count + 1,
+                        sizeof *tile->parts);
+}
+
+/* Splits all pieces of a slot in a row under one lamp. Pieces at one height follow each other and share their intervals. */
+static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, const gnoi_column *column, int lamp)
+{
+    const gnoi_piece *pieces = tile->lines.pieces;
+    double known = -HUGE_VAL;
+    for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
+        uint32_t line = pieces[p].line;
+        double y = tile->lines.lines[line].y;
+        if (y != known && !find_intervals(tile, slot, column, lamp, y)) {
+            tile->failed = 1;
+            return;
+        }
+        known = y;
+        split_piece(tile, lamp, &pieces[p], line_offset(tile, row, line), tile->judging ? base_line(tile, row, line) : -1);
     }
 }
 
@@ -133,12 +162,6 @@ static void sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
     }
 }
 
-/* Which of its row's base lines a line is; the one line of the apron above is the last, of the apron below the first. */
-static int base_line(const gnoi_tile *tile, int row, uint32_t line)
-{
-    return row == 0 ? tile->job->def.base_lines - 1 : (int)(line - tile->row_line[row]);
-}
-
 static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
@@ -155,14 +178,14 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
             clear_lamp(tile, j, first, last);
     for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
-        float dy = (float)(tile->lines.lines[pieces[p].line].y - (tile->y0 + row - 0.5));
         int line = tile->judging ? base_line(tile, row, pieces[p].line) : -1;
-        cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE, dy, line);
-        for (int j = 0; j < lamps; j++)
-            if (columns[j].state == GNOI_COLUMN_SPLIT)
-                split_piece(tile, slot, &columns[j], j, &pieces[p], dy, line);
+        cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE,
+                  line_offset(tile, row, pieces[p].line), line);
         tile->spans++;
     }
+    for (int j = 0; j < lamps && !tile->failed; j++)
+        if (columns[j].state == GNOI_COLUMN_SPLIT)
+            split_pieces(tile, row, slot, &columns[j], j);
     for (int pixel = first; pixel <= last && !tile->failed; pixel++)
         if (tile->cells.length[pixel] > 0) {
             tile->row_cover[pixel] += tile->cells.length[pixel];

@@ -37,6 +37,11 @@ static void sift_down(gno_shadow_interval *s, size_t i, size_t count)
 
 static void sort_by_start(gno_shadow_interval *s, size_t count)
 {
+    size_t sorted = 1;
+    while (sorted < count && s[sorted - 1].x0 <= s[sorted].x0)
+        sorted++;
+    if (sorted >= count)
+        return; /* as when many spans of one line meet the same shadow polygons */
     if (count <= SHORT_LIST) {
         insertion_sort(s, count);
         return;

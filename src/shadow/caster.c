@@ -266,6 +266,9 @@ static relation relate_shadow(const gnoi_hpoint *ring, size_t count, const point
     return turn ? relate(shadow, count, turn, region, region_count) : MIXED;
 }
 
+/* A float surely below v. */
+static float lowered(double v) { return (float)v - 1e-2f - 1e-6f * fabsf((float)v); }
+
 gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t index, gnoi_columns *columns)
 {
     const gnoi_prepared *prep = &p->scene->prepared;
@@ -303,13 +306,13 @@ gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t ind
         }
     }
     c = &columns->casters[columns->caster_count++];
-    c->y0 = (float)e.y0 - 1e-2f - 1e-6f * fabsf((float)e.y0);
-    c->y1 = (float)e.y1 + 1e-2f + 1e-6f * fabsf((float)e.y1);
+    c->x0 = lowered(e.x0);
+    c->x1 = -lowered(-e.x1);
+    c->y0 = lowered(e.y0);
+    c->y1 = -lowered(-e.y1);
     c->edge = (uint32_t)first_edge;
     c->edge_count = (uint32_t)(columns->edge_count - first_edge);
     c->material = caster->material;
-    c->x0 = (float)e.x0;
-    c->x1 = (float)e.x1;
     c->area = caster->ring_count == 1 ? (float)ring_area(&r) : 0;
     return GNOI_FOUND_PART;
 }

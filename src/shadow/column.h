@@ -26,10 +26,10 @@ typedef enum gnoi_column_state {
 } gnoi_column_state;
 
 typedef struct gnoi_caster {
-    float y0, y1;      /* lines that may cross it */
+    float x0, y0, x1, y1; /* bounds in the picture, widened against rounding */
     uint32_t edge, edge_count;
     uint32_t material; /* for its transmission */
-    float x0, x1, area; /* extent and area of the shadow polygon, 0 where it has holes */
+    float area;        /* of the shadow polygon, 0 where it has holes */
 } gnoi_caster;
 
 typedef struct gnoi_column {

@@ -94,7 +94,7 @@ static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double
 int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver,
                           const gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
 {
-    float fy = (float)y;
+    float fy = (float)y, fa = (float)xa, fb = (float)xb;
     uint32_t count = column->caster_count;
     const uint32_t *listed = NULL;
     if (column->rows != GNOI_NONE) {
@@ -106,7 +106,7 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
     columns->interval_count = 0;
     for (uint32_t i = 0; i < count; i++) {
         const gnoi_caster *c = &columns->casters[listed ? listed[i] : column->caster + i];
-        if (fy < c->y0 || fy > c->y1)
+        if (fy < c->y0 || fy > c->y1 || c->x0 > fb || c->x1 < fa)
             continue;
         if (c->edge_count > columns->crossing_capacity &&
             !gnoi_reserve(columns->context, (void **)&columns->crossings, &columns->crossing_capacity, c->edge_count,
