@@ -1,6 +1,9 @@
 /* interval.c -- where a sample line meets the shadow polygons of a column, and the dark outside of a spot's cone: see column.h. */
 #include "shadow/pair.h"
 
+/* Share of the nearness at a line's other end below which a plane is taken to be at its horizon. */
+#define HORIZON_SHARE 1e-9
+
 /* ---- spot cones --------------------------------------------------------------------------------------------------- */
 
 static int in_cone(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *r, double x, double y)
@@ -66,11 +69,29 @@ static int cone_roots(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_r
     return n;
 }
 
+/* Narrows [*xa,*xb] to where the receiver's plane is before the eye, short of its horizon; 0 when that is nowhere. */
+static int clip_at_horizon(const gnoi_receiver *r, double y, double *xa, double *xb)
+{
+    double za = gnoi_plane_at(&r->nearness, *xa, y), zb = gnoi_plane_at(&r->nearness, *xb, y);
+    double least = HORIZON_SHARE * (fabs(za) > fabs(zb) ? fabs(za) : fabs(zb)), at;
+    if (!(za > least) && !(zb > least))
+        return 0;
+    at = *xa + (za - least) / (za - zb) * (*xb - *xa);
+    if (!(za > least))
+        *xa = at;
+    else if (!(zb > least))
+        *xb = at;
+    return 1;
+}
+
 static int add_cone_intervals(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *r, double y, double xa, double xb,
                               gnoi_columns *columns)
 {
     double ends[4];
-    int n = cone_roots(view, lamp, r, y, xa, xb, ends + 1);
+    int n;
+    if (!view->orthographic && !clip_at_horizon(r, y, &xa, &xb))
+        return 1;
+    n = cone_roots(view, lamp, r, y, xa, xb, ends + 1);
     ends[0] = xa;
     ends[n + 1] = xb;
     for (int i = 0; i <= n; i++)
