@@ -82,6 +82,22 @@ static gno_status render_tiles(gnoi_frame_job *frame, int threads, gno_stats *st
     return status;
 }
 
+/* The scene's materials in single precision; NULL when memory fails. */
+static gnoi_tone *make_tones(const gno_scene *scene)
+{
+    gnoi_tone *tones = gnoi_malloc(scene->context, scene->material_count, sizeof *tones);
+    for (size_t i = 0; tones && i < scene->material_count; i++) {
+        const gno_material *m = &scene->materials[i];
+        for (int k = 0; k < 3; k++) {
+            tones[i].ambient[k] = (float)(scene->ambient[k] * m->ambient[k]);
+            tones[i].diffuse[k] = (float)m->diffuse[k];
+            tones[i].specular[k] = (float)m->specular[k];
+        }
+        tones[i].shininess = (float)m->shininess;
+    }
+    return tones;
+}
+
 /* Seconds since *from, which becomes now. */
 static double lap(double *from)
 {
@@ -114,8 +130,10 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb
     frame.rgb = rgb;
     status = gnoi_bins_build(scene, &frame.view, def->lines, threads, &frame.bins);
     stats->project_seconds = lap(&t);
+    frame.tones = status ? NULL : make_tones(scene);
     if (!status)
-        status = render_tiles(&frame, threads, stats);
+        status = frame.tones ? render_tiles(&frame, threads, stats) : GNO_ERROR_MEMORY;
+    gnoi_free(scene->context, frame.tones, scene->material_count, sizeof *frame.tones);
     stats->scan_seconds = lap(&t);
     stats->total_seconds = t - start;
     stats->polygons = (double)scene->prepared.poly_count;

@@ -58,7 +58,8 @@ static void start_tile(gnoi_tile *tile, size_t index)
     gnoi_columns_reset(&tile->store);
     memset(tile->acc, 0, sizeof tile->acc);
     memset(tile->weight, 0, sizeof tile->weight);
-    memset(tile->line_acc, 0, sizeof tile->line_acc);
+    for (int i = 0; i < job->def.base_lines && i < GNOI_BASE_LINES; i++)
+        memset(tile->line_acc[i], 0, sizeof tile->line_acc[i]);
     memset(tile->thin, 0, sizeof tile->thin);
 }
 

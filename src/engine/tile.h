@@ -20,12 +20,18 @@
 #include "shadow/cache.h"
 #include "shadow/column.h"
 
+/* A material in single precision, `ambient` times the scene's ambient light. */
+typedef struct gnoi_tone {
+    float ambient[3], diffuse[3], specular[3], shininess;
+} gnoi_tone;
+
 /* What all tiles of one picture share; read only while tiles are made. */
 typedef struct gnoi_frame_job {
     const gno_scene *scene;
     gno_render_def def;
     gnoi_view view;
     gnoi_bins bins;
+    gnoi_tone *tones; /* one for each material */
     const gnoi_lamp *lamps;
     const gnoi_tree *trees;
     int lamp_count;

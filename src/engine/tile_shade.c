@@ -123,14 +123,14 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
                                const float *tint)
 {
     const gnoi_frame_job *job = tile->job;
-    const gno_material *material = &job->scene->materials[slot->receiver.poly->material];
+    const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
     size_t lamps = (size_t)job->lamp_count, corners = slot->receiver.poly->shading == GNO_SHADING_GOURAUD ? 3 : 1;
     double w[3], (*intensity)[3] = seek_intensities(tile, slot, x, y, w);
     float rgb[3], coverage = cells->length[column];
     if (!intensity)
         return;
     for (int k = 0; k < 3; k++)
-        rgb[k] = tint ? 0 : coverage * (float)(job->scene->ambient[k] * material->ambient[k]);
+        rgb[k] = tint ? 0 : coverage * tone->ambient[k];
     for (size_t j = 0; j < lamps; j++) {
         float lamp_weight = tile->batch.weight[j * GNOI_BATCH + (size_t)tile->batch.count];
         for (size_t i = 0; i < corners && lamp_weight > 0; i++)
@@ -145,7 +145,7 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
 
 static void set_point(gnoi_batch *b, int i, const gnoi_view *view, const gnoi_screen_plane *nearness, double x, double y)
 {
-    double k = 1 / view->s, u = (x - 0.5 * view->width) * k, v = (y - 0.5 * view->height) * k, z = gnoi_plane_at(nearness, x, y);
+    double u = (x - 0.5 * view->width) * view->unit, v = (y - 0.5 * view->height) * view->unit, z = gnoi_plane_at(nearness, x, y);
     vec3 p = v3_sub(v3_scale(view->right, u), v3_scale(view->up, v));
     p = view->orthographic ? v3_mad(p, view->forward, -z) : v3_scale(v3_add(p, view->forward), 1 / z);
     b->px[i] = (float)p.x;
@@ -171,15 +171,15 @@ static void set_normal(gnoi_batch *b, int i, const gnoi_frame_job *job, gnoi_slo
     b->gz[i] = (float)g.z;
 }
 
-static void set_material(gnoi_batch *b, int i, const gno_scene *scene, const gno_material *m, float coverage, const float *tint)
+static void set_material(gnoi_batch *b, int i, const gnoi_tone *m, float coverage, const float *tint)
 {
     for (int k = 0; k < 3; k++) {
         float t = tint ? tint[k] : 1;
-        b->kd[k][i] = t * (float)m->diffuse[k];
-        b->ks[k][i] = t * (float)m->specular[k];
-        b->rgb[k][i] = tint ? 0 : coverage * (float)(scene->ambient[k] * m->ambient[k]);
+        b->kd[k][i] = t * m->diffuse[k];
+        b->ks[k][i] = t * m->specular[k];
+        b->rgb[k][i] = tint ? 0 : coverage * m->ambient[k];
     }
-    b->shininess[i] = (float)m->shininess;
+    b->shininess[i] = m->shininess;
 }
 
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint)
@@ -196,7 +196,7 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     }
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
     set_normal(b, i, job, slot, x, y);
-    set_material(b, i, job->scene, &job->scene->materials[slot->receiver.poly->material], coverage, tint);
+    set_material(b, i, &job->tones[slot->receiver.poly->material], coverage, tint);
     b->coverage[i] = coverage;
     for (int l = 0; l < job->def.base_lines && tile->judging; l++)
         tile->cover_by_line[l][i] = cells->by_line[l][column];

@@ -46,6 +46,7 @@ gnoi_view gnoi_view_make(const gno_camera *camera, const gno_image_def *image, d
         view.w = view.depth;
         view.near_depth = NEAR_SHARE * scale;
     }
+    view.unit = 1 / view.s;
     view.x = form_combine(right, view.s, view.w, 0.5 * image->width);
     view.y = form_combine(up, -view.s, view.w, 0.5 * image->height);
     return view;

@@ -24,6 +24,7 @@ typedef struct gnoi_view {
     int width, height;
     vec3 eye, forward, right, up; /* orthonormal */
     double s;                     /* pixels per unit at depth 1 (perspective) or anywhere (orthographic) */
+    double unit;                  /* 1 / s */
     gnoi_form x, y, w;            /* homogeneous picture coordinates; w is the constant 1 for an orthographic view */
     gnoi_form depth;              /* along the view direction from the eye */
     double near_depth;            /* what lies nearer is cut away */
@@ -49,7 +50,7 @@ gnoi_screen_plane gnoi_view_nearness(const gnoi_view *view, const double n[3], d
 /* The scene point seen at picture point (x,y) with nearness z (z > 0 for a perspective view). */
 static inline vec3 gnoi_view_point(const gnoi_view *view, double x, double y, double z)
 {
-    double u = (x - 0.5 * view->width) / view->s, v = (y - 0.5 * view->height) / view->s;
+    double u = (x - 0.5 * view->width) * view->unit, v = (y - 0.5 * view->height) * view->unit;
     vec3 across = v3_sub(v3_scale(view->right, u), v3_scale(view->up, v));
     if (view->orthographic)
         return v3_add(v3_mad(view->eye, view->forward, -z), across);
