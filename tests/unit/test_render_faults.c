@@ -108,10 +108,11 @@ static int stop_at(void *user, const char *stage, double fraction)
     return --*(int *)user < 0;
 }
 
-/* The first time it is asked, the callback stops the render; the scene renders whole afterwards. */
+/* The first time it is asked, the callback stops a picture large enough to ask at all; the scene renders whole afterwards. */
 static void test_cancel(void **state)
 {
-    static float rgb[WIDTH * HEIGHT * 3];
+    static float rgb[40 * WIDTH * 40 * HEIGHT * 3];
+    gno_image_def image = gno_image_def_default();
     fail_alloc alloc = {0};
     gno_context_def def = fail_alloc_def(&alloc);
     gno_render_def how = gno_render_def_default();
@@ -125,6 +126,9 @@ static void test_cancel(void **state)
     assert_int_equal(gno_context_create(&def, &context), GNO_OK);
     assert_int_equal(gno_scene_create(context, &scene), GNO_OK);
     assert_int_equal(fill(scene), GNO_OK);
+    image.width = 40 * WIDTH;
+    image.height = 40 * HEIGHT;
+    assert_int_equal(gno_scene_set_image(scene, &image), GNO_OK);
     assert_int_equal(gno_render(scene, &how, rgb, NULL), GNO_ERROR_CANCELLED);
     left = 1000000;
     assert_int_equal(gno_render(scene, &how, rgb, NULL), GNO_OK);
