@@ -38,7 +38,7 @@ typedef struct gnoi_frame_job {
     float *rgb;
 } gnoi_frame_job;
 
-/* Rows of the tile, with one row of apron above and below (half a row of lines is made there to judge contrast). */
+/* Rows of the tile, with one row of apron above and below (the one line next to the tile is made there, to judge its border by). */
 #define GNOI_TILE_ROWS (GNOI_TILE_H + 2)
 #define GNOI_TILE_PIXELS (GNOI_TILE_ROWS * GNOI_TILE_W)
 
@@ -59,7 +59,7 @@ typedef struct gnoi_slot {
     uint32_t chain;        /* first visible piece in the row at hand, 0: none */
     gnoi_interp interp;
     uint32_t first_intensity; /* constant, gouraud: intensities in tile.intensities, GNOI_NONE until needed */
-    uint32_t intensity_corner;
+    uint32_t intensity_triangle; /* gouraud: of the interpolation, whose corners they are */
 } gnoi_slot;
 
 /* Coverage of one surface, or of its lit part, along a pixel row: sums over pieces of length, and of length times the
@@ -88,7 +88,7 @@ typedef struct gnoi_tile {
     size_t crossing_capacity;
     double *crossings;
     size_t touched_capacity;
-    uint32_t *touched;                     /* slots seen in the row at hand */
+    uint32_t *touched;                     /* slots seen in the row, or on the lines, at hand */
     size_t column_count, column_capacity;
     gnoi_column *columns;
     gnoi_columns store;
@@ -121,8 +121,10 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index);
 void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count);
 void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
 
-/* tile_scan.c: marks the pixels along nearly level edges as having something thin. */
+/* tile_scan.c: marks the pixels along nearly level edges as having something thin; those of a box (picture coordinates) less
+ * than a row high, whose edges may be exactly level and so are not kept. */
 void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count);
+void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, double y1);
 
 /* tile_light.c: finds the columns of the surfaces seen on the tile's lines. */
 void gnoi_tile_light(gnoi_tile *tile);
@@ -135,6 +137,5 @@ void gnoi_tile_row(gnoi_tile *tile, int row);
  * term; else the part that one lamp alone reaches, with this factor on the light. Flushed when the batch is full. */
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint);
 void gnoi_tile_flush(gnoi_tile *tile);
-int gnoi_tile_is_precomputed(const gnoi_slot *slot);
 
 #endif

@@ -65,8 +65,10 @@ static void mark_thin_shadows(gnoi_tile *tile, size_t first_column)
             continue;
         for (uint32_t k = 0; k < column->caster_count; k++) {
             const gnoi_caster *c = &tile->store.casters[column->caster + k];
-            if (c->area > 0 && c->area * (float)tile->job->def.base_lines < c->x1 - c->x0)
-                gnoi_tile_mark_thin(tile, tile->store.edges + c->edge, c->edge_count);
+            if (!(c->area > 0) || c->area * (float)tile->job->def.base_lines >= c->x1 - c->x0)
+                continue;
+            gnoi_tile_mark_thin(tile, tile->store.edges + c->edge, c->edge_count);
+            gnoi_tile_mark_level(tile, (double)c->x0, (double)c->y0, (double)c->x1, (double)c->y1);
         }
     }
 }

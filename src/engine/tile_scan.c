@@ -58,6 +58,17 @@ void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count)
     }
 }
 
+void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, double y1)
+{
+    int first = x0 > tile->x0 ? (int)(x0 - tile->x0) : 0, last = x1 < tile->x0 + tile->width ? (int)(x1 - tile->x0) : tile->width - 1;
+    double top = y0 - tile->y0 + 1, bottom = y1 - tile->y0 + 1;
+    if (y1 - y0 >= 1)
+        return;
+    for (int row = top > 1 ? (int)top : 1; row <= tile->height && row <= bottom; row++)
+        for (int x = first; x <= last; x++)
+            tile->thin[row * GNOI_TILE_W + x] = 1;
+}
+
 /* Bounds of a polygon in the picture; everything for one that must be cut first. */
 static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
 {
@@ -165,7 +176,7 @@ static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
     slot = &tile->slots[tile->slot_count];
     depth = &lines->depths[tile->slot_count];
     slot->first_column = slot->first_intensity = GNOI_NONE;
-    slot->intensity_corner = GNOI_NONE;
+    slot->intensity_triangle = GNOI_NONE;
     slot->chain = 0;
     slot->interp.ready = 0;
     r = &slot->receiver;
@@ -299,6 +310,7 @@ static void judge_thin(gnoi_tile *tile, const gnoi_item *item, const gnoi_poly *
         if (is_open(tile, &tile->lines.lines[line], &around, item->z1)) {
             set_outline(tile, item, poly);
             gnoi_tile_mark_thin(tile, tile->edges, tile->edge_count);
+            gnoi_tile_mark_level(tile, tile->outline.x0, tile->outline.y0, tile->outline.x1, tile->outline.y1);
             return;
         }
 }

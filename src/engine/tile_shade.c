@@ -5,7 +5,7 @@
  */
 #include "engine/tile.h"
 
-int gnoi_tile_is_precomputed(const gnoi_slot *slot)
+static int is_precomputed(const gnoi_slot *slot)
 {
     uint32_t s = slot->receiver.poly->shading;
     return s == GNO_SHADING_CONSTANT || s == GNO_SHADING_GOURAUD;
@@ -102,12 +102,12 @@ static double (*seek_intensities(gnoi_tile *tile, gnoi_slot *slot, double x, dou
     if (gouraud) {
         double sum;
         gnoi_interp_seek(&slot->interp, job->scene, &job->view, poly, x, y);
-        for (size_t i = 0; i < 3 && slot->intensity_corner != slot->interp.triangle; i++) {
+        for (size_t i = 0; i < 3 && slot->intensity_triangle != slot->interp.triangle; i++) {
             uint32_t corner = slot->interp.corner[i];
             vec3 p = v3_from(job->scene->prepared.positions[job->scene->prepared.corner_vertex[corner]]);
             set_intensity(job, slot, p, corner_normal(job, slot, corner), &tile->intensities[slot->first_intensity + i * lamps]);
         }
-        slot->intensity_corner = slot->interp.triangle;
+        slot->intensity_triangle = slot->interp.triangle;
         for (int i = 0; i < 3; i++) {
             w[i] = gnoi_plane_at(&slot->interp.weight[i], x, y);
             w[i] = w[i] > 0 ? w[i] : 0;
@@ -190,7 +190,7 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     double x = tile->x0 + column + 0.5 + (double)(cells->mx[column] / coverage);
     double y = tile->y0 + row - 0.5 + (double)(cells->my[column] / coverage);
     int i = b->count;
-    if (gnoi_tile_is_precomputed(slot)) {
+    if (is_precomputed(slot)) {
         sample_precomputed(tile, slot, row, column, x, y, cells, tint);
         return;
     }

@@ -279,7 +279,8 @@ gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t ind
     size_t first_edge = columns->edge_count, room = 4 * (size_t)caster->corner_count + 16;
     ring_points r = {NULL, NULL, 0};
     gnoi_caster *c;
-    if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && caster->corner_count == 3 && separated(p, caster)) || carries(p, caster))
+    if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && caster->corner_count == 3 && separated(p, caster)) ||
+        carries(p, caster))
         return GNOI_FOUND_NOTHING;
     if (!gnoi_reserve(columns->context, (void **)&columns->points, &columns->point_capacity, 2 * room, sizeof *columns->points) ||
         !gnoi_reserve(columns->context, (void **)&columns->casters, &columns->caster_capacity, columns->caster_count + 1,
