@@ -1,11 +1,10 @@
 /* cache.c -- see cache.h. */
 #include "shadow/cache.h"
 #include "base/parallel.h"
+#include "shadow/lamp.h"
 
 /* Entries of `halved` beyond which it is not worth its memory. */
 #define MOST_HALVED ((size_t)1 << 26)
-
-#define PI 3.14159265358979323846
 
 static void free_cache(gno_context *context, gnoi_shadow_cache *cache)
 {
@@ -15,43 +14,6 @@ static void free_cache(gno_context *context, gnoi_shadow_cache *cache)
     gnoi_free(context, cache->trees, cache->lamp_count, sizeof *cache->trees);
     gnoi_free(context, cache->lamps, cache->lamp_count, sizeof *cache->lamps);
     gnoi_free(context, cache, 1, sizeof *cache);
-}
-
-static size_t lamps_of(const gno_light *light)
-{
-    return light->type == GNO_LIGHT_AREA ? (size_t)light->samples * (size_t)light->samples : 1;
-}
-
-static gnoi_lamp lamp_from(const gno_light *light)
-{
-    gnoi_lamp lamp;
-    lamp.directional = light->type == GNO_LIGHT_DIRECTIONAL;
-    lamp.spot = light->type == GNO_LIGHT_SPOT;
-    lamp.position = v3_from(light->position);
-    lamp.axis = v3_unit(v3_from(light->direction));
-    lamp.to_light = v3_scale(lamp.axis, -1);
-    lamp.cos_half_angle = cos(light->angle * PI / 360);
-    for (int k = 0; k < 3; k++)
-        lamp.intensity[k] = light->intensity[k];
-    lamp.falloff = light->falloff;
-    lamp.falloff_k = light->falloff_k;
-    lamp.distance_from_viewer = light->distance_from_viewer;
-    return lamp;
-}
-
-/* An area light is a grid of points at the centres of its parallelogram's cells, each with its share of the intensity. */
-static void add_area(const gno_light *light, gnoi_lamp *lamps)
-{
-    int n = light->samples;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            gnoi_lamp lamp = lamp_from(light);
-            lamp.position = v3_mad(lamp.position, v3_from(light->edge1), (i + 0.5) / n);
-            lamp.position = v3_mad(lamp.position, v3_from(light->edge2), (j + 0.5) / n);
-            for (int k = 0; k < 3; k++)
-                lamp.intensity[k] /= (double)n * n;
-            *lamps++ = lamp;
-        }
 }
 
 typedef struct job {
@@ -123,8 +85,7 @@ gno_status gnoi_shadow_cache_build(gno_scene *scene, const gnoi_view *view, int 
     cache = gnoi_calloc(context, 1, sizeof *cache);
     if (!cache)
         return gnoi_fail(context, GNO_ERROR_MEMORY, "out of memory for the lights");
-    for (size_t i = 0; i < scene->light_count; i++)
-        cache->lamp_count += lamps_of(&scene->lights[i].light);
+    cache->lamp_count = gnoi_lamps_count(scene);
     if (cache->lamp_count > GNO_MAX_LIGHTS) {
         n = cache->lamp_count;
         cache->lamp_count = 0;
@@ -136,14 +97,7 @@ gno_status gnoi_shadow_cache_build(gno_scene *scene, const gnoi_view *view, int 
     cache->solid_count = cache->lamp_count * scene->prepared.solid_count <= MOST_HALVED ? scene->prepared.solid_count : 0;
     cache->halved = gnoi_calloc(context, cache->lamp_count * cache->solid_count, 1);
     if (cache->lamps && cache->trees && cache->halved) {
-        for (size_t i = 0; i < scene->light_count; i++) {
-            const gno_light *light = &scene->lights[i].light;
-            if (light->type == GNO_LIGHT_AREA)
-                add_area(light, &cache->lamps[n]);
-            else
-                cache->lamps[n] = lamp_from(light);
-            n += lamps_of(light);
-        }
+        gnoi_lamps_fill(scene, cache->lamps);
         set_halved(scene, view, cache);
         j.scene = scene;
         j.cache = cache;

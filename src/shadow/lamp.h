@@ -1,0 +1,17 @@
+/* lamp.h -- the lights of a scene as the passes see them: single points or directions.
+ *
+ * Place in the data flow: scene lights -> lamps, numbered in the order of the lights -> trees, columns, pieces.
+ * Invariant: an area light's samples x samples lamps follow one another; any other light is one lamp.
+ */
+#ifndef GNOI_SHADOW_LAMP_H
+#define GNOI_SHADOW_LAMP_H
+
+#include "scene/scene.h"
+#include "shadow/frame.h"
+
+size_t gnoi_lamps_count(const gno_scene *scene);
+
+/* lamps: room for gnoi_lamps_count. */
+void gnoi_lamps_fill(const gno_scene *scene, gnoi_lamp *lamps);
+
+#endif
