@@ -218,6 +218,9 @@ GNO_API gno_context *gno_scene_context(const gno_scene *scene);
 GNO_API gno_status gno_scene_add_material(gno_scene *scene, const gno_material *material, int *index);
 GNO_API gno_status gno_scene_add_light(gno_scene *scene, const char *name, const gno_light *light, int *index);
 
+/* Names a material for people's eyes: reports and drawings carry it. Copied; NULL takes it away. Errors: MEMORY, ARGUMENT. */
+GNO_API gno_status gno_scene_set_material_name(gno_scene *scene, int index, const char *name);
+
 /* Adds polygons; their numbers run on from *first_polygon (may be NULL). Corner indices, offsets and coordinates are
  * checked here; planarity and area when the scene is prepared. Errors: MEMORY, ARGUMENT, LIMIT; the scene is unchanged then. */
 GNO_API gno_status gno_scene_add_mesh(gno_scene *scene, const gno_mesh_def *mesh, size_t *first_polygon);
@@ -245,6 +248,11 @@ GNO_API gno_scene_counts gno_scene_count(const gno_scene *scene);
 GNO_API int gno_scene_bounds(const gno_scene *scene, double lower[3], double upper[3]);
 GNO_API gno_status gno_scene_material(const gno_scene *scene, int index, gno_material *material);
 GNO_API gno_status gno_scene_light(const gno_scene *scene, int index, gno_light *light, const char **name);
+
+/* Names as they were given, "" where none was or the index is out of range; valid until the scene changes. An object is what one
+ * gno_scene_add_mesh added, numbered from 0. */
+GNO_API const char *gno_scene_material_name(const gno_scene *scene, int index);
+GNO_API const char *gno_scene_object_name(const gno_scene *scene, int index);
 
 /* One polygon's view into the scene's arrays, valid until the scene changes. */
 typedef struct gno_polygon {

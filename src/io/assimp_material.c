@@ -109,7 +109,10 @@ int gnoi_assimp_material(gnoi_assimp *a, unsigned number, gno_status *status)
     const struct aiMaterial *from = a->file->mMaterials[number];
     if (is_made_up(from)) return 0;
     gno_material material = convert(from, a->is_gltf);
+    struct aiString name;
     *status = gno_scene_add_material(a->scene, &material, &a->material_index[number]);
+    if (*status == GNO_OK && aiGetMaterialString(from, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS)
+        *status = gno_scene_set_material_name(a->scene, a->material_index[number], name.data);
     if (*status != GNO_OK) {
         *status = gnoi_mesh_blame(a->scene, a->path, *status);
         return -1;

@@ -308,11 +308,12 @@ gno_status gnoi_mtl_read_libraries(gnoi_mtl *mtl, const char *obj_path, size_t l
 
 /* ---- into the scene ----------------------------------------------------------------------------------------- */
 
-static gno_status add_to_scene(gnoi_mtl_entry *entry, gno_scene *scene, const char *obj_path)
+static gno_status add_to_scene(gnoi_mtl_entry *entry, const char *name, gno_scene *scene, const char *obj_path)
 {
     gno_material material = entry->material;
     if (!(entry->given & given_ambient)) memcpy(material.ambient, material.diffuse, sizeof material.ambient);
     gno_status status = gno_scene_add_material(scene, &material, &entry->scene_index);
+    if (status == GNO_OK) status = gno_scene_set_material_name(scene, entry->scene_index, name);
     return status == GNO_OK ? GNO_OK : gnoi_mesh_blame(scene, obj_path, status);
 }
 
@@ -327,7 +328,7 @@ gno_status gnoi_mtl_to_scene(gnoi_mtl *mtl, gno_scene *scene, const char *obj_pa
         }
         gnoi_mtl_entry *entry = entry_at(mtl, numbers[i]);
         if (entry->scene_index == not_in_scene && entry->defined) {
-            gno_status status = add_to_scene(entry, scene, obj_path);
+            gno_status status = add_to_scene(entry, gnoi_names_text(&mtl->names, numbers[i]), scene, obj_path);
             if (status != GNO_OK) return status;
         } else if (entry->scene_index == not_in_scene) {
             entry->scene_index = 0;

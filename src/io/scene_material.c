@@ -148,6 +148,7 @@ static gno_status read_material(gnoi_scene_reader *reader, const gnoi_yaml_node 
     if (status != GNO_OK) return status;
     note_undrawn(reader, &entry, seen);
     status = gnoi_wrap(reader->yaml, node, gno_scene_add_material(reader->scene, &entry.material, &index));
+    if (status == GNO_OK) status = gno_scene_set_material_name(reader->scene, index, node->key);
     if (status != GNO_OK) return status;
     gnoi_name *name = &reader->materials.items[reader->materials.count++];
     name->name = node->key;

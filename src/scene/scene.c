@@ -131,6 +131,7 @@ void gno_scene_destroy(gno_scene *scene)
     for (i = 0; i < scene->light_count; i++) {
         gnoi_free(context, scene->lights[i].name, scene->lights[i].name_size, 1);
     }
+    gnoi_scene_free_names(scene);
     free_arrays(context, scene);
     gnoi_free(context, scene, 1, sizeof *scene);
 }

@@ -27,6 +27,11 @@ typedef struct gnoi_named_light {
     size_t name_size;
 } gnoi_named_light;
 
+typedef struct gnoi_name_text {
+    char *text; /* gnoi_malloc of size bytes, or NULL */
+    size_t size;
+} gnoi_name_text;
+
 /* A polygon ready for the passes: planar, with area. Two cache lines hold three; keep it at 64 bytes. */
 typedef struct gnoi_poly {
     double n[3], d;        /* unit normal and offset: n.x + d = 0; n follows the winding of the outer ring */
@@ -99,6 +104,8 @@ struct gno_scene {
     gnoi_object *objects;
     size_t material_count, material_capacity;
     gno_material *materials;
+    size_t material_name_count; /* at most material_count: the rest have none */
+    gnoi_name_text *material_names;
     size_t light_count, light_capacity;
     gnoi_named_light *lights;
     gno_camera camera;
@@ -121,6 +128,9 @@ static inline uint32_t gnoi_solid_of(const gnoi_prepared *prep, const gnoi_poly 
 
 /* 1 when `point` is certainly outside a closed part: the signed crossings of a path from far away sum to zero. */
 int gnoi_solid_outside(const gno_scene *scene, size_t solid, vec3 point);
+
+/* names.c */
+void gnoi_scene_free_names(gno_scene *scene);
 
 /* Drops what was derived from geometry, materials or lights; every change of them calls it. */
 void gnoi_scene_changed(gno_scene *scene);

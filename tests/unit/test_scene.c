@@ -486,6 +486,31 @@ static void test_materials(void **state)
     assert_int_equal(gno_scene_count(b->scene).materials, 2);
 }
 
+static void test_names(void **state)
+{
+    bed *b = *state;
+    gno_material m = gno_material_default();
+    int index;
+    assert_string_equal(gno_scene_material_name(b->scene, 0), "");
+    assert_int_equal(gno_scene_add_material(b->scene, &m, &index), GNO_OK);
+    assert_int_equal(gno_scene_set_material_name(b->scene, 1, "brick"), GNO_OK);
+    assert_string_equal(gno_scene_material_name(b->scene, 0), "");
+    assert_string_equal(gno_scene_material_name(b->scene, 1), "brick");
+    assert_int_equal(gno_scene_add_material(b->scene, &m, &index), GNO_OK);
+    assert_string_equal(gno_scene_material_name(b->scene, 2), "");
+    assert_int_equal(gno_scene_set_material_name(b->scene, 1, "red brick"), GNO_OK);
+    assert_int_equal(gno_scene_set_material_name(b->scene, 2, ""), GNO_OK);
+    assert_string_equal(gno_scene_material_name(b->scene, 1), "red brick");
+    assert_int_equal(gno_scene_set_material_name(b->scene, 1, NULL), GNO_OK);
+    assert_string_equal(gno_scene_material_name(b->scene, 1), "");
+    assert_int_equal(gno_scene_set_material_name(b->scene, 3, "none"), GNO_ERROR_ARGUMENT);
+    assert_int_equal(gno_scene_set_material_name(b->scene, -1, "none"), GNO_ERROR_ARGUMENT);
+    assert_int_equal(gno_scene_set_material_name(NULL, 0, "none"), GNO_ERROR_ARGUMENT);
+    assert_string_equal(gno_scene_material_name(b->scene, 3), "");
+    assert_string_equal(gno_scene_object_name(b->scene, 0), "");
+    assert_string_equal(gno_scene_object_name(b->scene, -1), "");
+}
+
 static void test_lights(void **state)
 {
     bed *b = *state;
@@ -623,6 +648,7 @@ int main(void)
         cmocka_unit_test_setup_teardown(test_limits, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_empty_mesh, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_materials, set_up, tear_down),
+        cmocka_unit_test_setup_teardown(test_names, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_lights, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_camera_and_image, set_up, tear_down),
         cmocka_unit_test(test_every_allocation_fails),
