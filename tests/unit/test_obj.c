@@ -332,7 +332,7 @@ static void test_material_values(void **state)
     check_vector(m.transmission, 0.25, 0.25, 0.25, 0);
     check_near(m.shininess, 25, 0);
     assert_string_equal(gno_scene_material_name(b->scene, 1), "m");
-    assert_string_equal(gno_scene_object_name(b->scene, 0), "a");
+    assert_string_equal(gno_scene_object_name(b->scene, 0), "a.obj");
     assert_int_equal(m.shading, GNO_SHADING_FLAT);
     assert_int_equal(m.two_sided, 1);
     assert_string_equal(b->log, "");
