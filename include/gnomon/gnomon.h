@@ -288,6 +288,36 @@ typedef enum gno_terminator {
     GNO_TERMINATOR_SMOOTH = 1 /* phong-shaded polygons fade before the facets show: Chiang, Li and Burley 2019, see docs/algorithm.md */
 } gno_terminator;
 
+/* What is seen in each pixel as pairs of a number and the share of the pixel that it covers, the largest share first, of
+ * equal ones the lower number. The background takes part under GNO_BACKGROUND. So the shares of a pixel add up to 1, but for
+ * rounding, if no more than `count` numbers are seen there. Pairs left over are GNO_BACKGROUND with share 0. */
+#define GNO_BACKGROUND 0xffffffffu
+#define GNO_MAX_RANKS 256
+
+typedef struct gno_ranks {
+    int count;       /* pairs in each pixel, from 1 to GNO_MAX_RANKS */
+    unsigned *id;    /* height x width x count; NULL: not wanted */
+    float *coverage; /* the same shape */
+} gno_ranks;
+
+/* Layers beside the picture: what is seen, instead of its colour. The caller owns the buffers (height rows of width pixels, top
+ * row first); NULL is not wanted. Depth, normal and uv belong to one surface a pixel, the one that covers the most of it (of equal
+ * ones the nearest), at the middle of its seen part: a mean over several surfaces would be on none of them. */
+typedef struct gno_layers {
+    float *depth;    /* 1 a pixel: distance from the eye along the view direction; infinite where nothing is seen */
+    float *normal;   /* 3: unit, scene space, on the viewer's side; interpolated where shading is; 0 where nothing is seen */
+    float *uv;       /* 2: the mesh's texture coordinates; 0 where it has none or nothing is seen */
+    float *coverage; /* 1: share of the pixel that surfaces cover, in [0,1] */
+    float *shadow;   /* light count planes of height x width: the share of light j's rays, mean of the channels, that reaches what is seen
+                        in the pixel; polygons facing away from a light are in their own shadow; 1 where nothing is seen */
+    gno_ranks polygons;  /* numbers of gno_scene_polygon */
+    gno_ranks objects;   /* numbers of the meshes they came from */
+    gno_ranks materials; /* indices of their materials */
+} gno_layers;
+
+/* No layer wanted. */
+GNO_API gno_layers gno_layers_default(void);
+
 typedef struct gno_render_def {
     int lines;      /* sample lines per pixel row at the finest; default 18 */
     int base_lines; /* sample lines everywhere; default 2. Equal to lines: no refinement. Else lines must be an odd multiple of
@@ -295,6 +325,7 @@ typedef struct gno_render_def {
     double refine_above; /* bend (second difference, linear colour) that calls for more lines; default 0.02 */
     int threads;    /* 0 (default): one per processor */
     gno_terminator terminator;
+    const gno_layers *layers; /* filled beside the picture; NULL (default): none */
 } gno_render_def;
 
 GNO_API gno_render_def gno_render_def_default(void);

@@ -43,6 +43,13 @@ GNO_API gno_picture_def gno_picture_def_default(void);
 GNO_API gno_status gno_picture_write(gno_context *context, const char *path, const gno_picture_def *def, int width, int height,
                                      const float *rgb);
 
+/* Writes an .exr file with the layers of a rendered scene beside the picture: the channels depth.Z, normal.X .Y .Z, uv.U .V,
+ * coverage.A, shadow.LIGHT for each light, polygon.id, and ranked pairs as Cryptomatte files of the sets CryptoPolygon,
+ * CryptoObject, CryptoMaterial (docs/layers.md). scene is the one rendered, unchanged; NULL buffers of `layers` are left out.
+ * Layers are 32 bits whatever the depth, and without exposure. Errors: as gno_picture_write; ARGUMENT (not an .exr). */
+GNO_API gno_status gno_picture_write_layers(const gno_scene *scene, const char *path, const gno_picture_def *def, const float *rgb,
+                                            const gno_layers *layers);
+
 #ifdef __cplusplus
 }
 #endif

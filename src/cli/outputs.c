@@ -12,9 +12,10 @@
 typedef struct kind {
     const char *extension;
     int depths[2];
+    int layers;
 } kind;
 
-static const kind kinds[] = {{".png", {8, 16}}, {".exr", {16, 32}}, {".pfm", {32, 32}}};
+static const kind kinds[] = {{".png", {8, 16}, 0}, {".exr", {16, 32}, 1}, {".pfm", {32, 32}, 0}};
 
 enum { KINDS = sizeof kinds / sizeof kinds[0] };
 
@@ -99,4 +100,20 @@ int outputs_check(outputs *files, int depth, const char *command_name)
         }
     }
     return EXIT_DONE;
+}
+
+int output_has_layers(const char *path)
+{
+    const kind *format = kind_of(path);
+    return format != NULL && format->layers;
+}
+
+int outputs_has_layers(const outputs *files)
+{
+    for (int i = 0; i < files->count; i++) {
+        if (output_has_layers(files->paths[i])) {
+            return 1;
+        }
+    }
+    return 0;
 }

@@ -21,4 +21,8 @@ int outputs_check(outputs *files, int depth, const char *command_name);
 /* Standard output, a pipe or a device: takes the bytes as they come and leaves nothing half done in a folder. */
 int output_is_stream(const char *path);
 
+/* Whether a file, or any of them, can hold layers beside the picture. */
+int output_has_layers(const char *path);
+int outputs_has_layers(const outputs *files);
+
 #endif

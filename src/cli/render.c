@@ -4,6 +4,7 @@
  */
 #include "cli/cli.h"
 #include "cli/interrupt.h"
+#include "cli/layers.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
 #include "cli/progress.h"
@@ -14,7 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum option_id { OUTPUT, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, SET, STATS, QUIET, HELP };
+enum option_id { OUTPUT, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, AOV, RANKS, SET, STATS, QUIET, HELP };
 
 static const option options[] = {
     [OUTPUT] = {"output", 'o', "FILE", "picture, by extension: .png (sRGB), .exr (linear), .pfm (linear);\n"
@@ -29,6 +30,9 @@ static const option options[] = {
     [TERMINATOR] = {"terminator", 0, "KIND", "shadows on smooth-shaded meshes: exact, as the flat facets cast\n"
                                              "them (default), or smooth"},
     [ENGINE] = {"engine", 0, "NAME", "scanline (default)"},
+    [AOV] = {"aov", 0, "LIST", "layers beside the picture in .exr files, with commas between:\n" LAYER_NAMES},
+    [RANKS] = {"ranks", 0, "N", "pairs of id and coverage in each pixel for the layers polygon,\n"
+                                "object and material (6)"},
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. camera.eye=[1,2,3]; may be given\n"
                                     "several times"},
     [STATS] = {"stats", 0, "FILE", "one JSON object: seconds per stage, counts, peak memory; \"-\" is\n"
@@ -49,6 +53,7 @@ typedef struct job {
     int depth;
     double exposure;
     gno_render_def def;
+    layers_wish layers;
     const char *stats_path;
     int quiet;
 } job;
@@ -64,6 +69,7 @@ static int help(void)
            "  gnomon render town.yaml                                    town.png\n"
            "  gnomon render town.yaml -o town.png -o town.exr --size 1920x1080\n"
            "  gnomon render bunny.obj --set camera.eye=[0,-3,1] --set 'image.background=[1,1,1]'\n"
+           "  gnomon render town.yaml -o town.exr --aov depth,normal,object\n"
            "  gnomon render town.yaml -o - --size 320x180 | display -\n"
            "  gnomon render town.yaml --threads 1 --stats -              how long each stage took\n",
            def.base_lines, def.lines);
@@ -134,6 +140,12 @@ static int take_option(job *work, int id, char *value)
                                                                            : usage("render", "--terminator %s: not one of exact, smooth", value);
     case ENGINE:
         return strcmp(value, "scanline") == 0 ? -1 : usage("render", "--engine %s: not one of scanline", value);
+    case AOV:
+        return layers_parse(&work->layers, value, "render");
+    case RANKS:
+        return parse_int(value, 1, GNO_MAX_RANKS, &work->layers.ranks)
+                   ? -1
+                   : usage("render", "--ranks %s: not a number from 1 to %d", value, GNO_MAX_RANKS);
     case SET:
         return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("render", "--set %s: not KEY=VALUE", value);
     case STATS:
@@ -200,6 +212,9 @@ static int read_arguments(job *work, int argc, char **argv)
             return usage("render", "standard output cannot take both the picture and --stats");
         }
     }
+    if (work->layers.wanted != 0 && !outputs_has_layers(&work->files)) {
+        return usage("render", "--aov: layers need an output in .exr");
+    }
     const int status = outputs_check(&work->files, work->depth, "render");
     return status != EXIT_DONE ? status : -1;
 }
@@ -229,8 +244,10 @@ static gno_status load(const job *work, gno_context *context, gno_scene **scene)
 
 /* A stream leaves nothing behind, and a reader that does not read could hold it up for ever: there a signal ends the
  * program at once. A file is finished, which takes little time, and the program ends after it. */
-static gno_status write_pictures(const job *work, gno_context *context, const gno_image_def *image, const float *rgb)
+static gno_status write_pictures(const job *work, gno_scene *scene, const float *rgb, const gno_layers *layers)
 {
+    gno_context *context = gno_scene_context(scene);
+    const gno_image_def image = gno_scene_image(scene);
     gno_picture_def def = gno_picture_def_default();
     def.exposure = work->exposure;
     for (int i = 0; i < work->files.count; i++) {
@@ -242,7 +259,10 @@ static gno_status write_pictures(const job *work, gno_context *context, const gn
             interrupt_release();
         }
         def.depth = work->files.depths[i];
-        const gno_status status = gno_picture_write(context, work->files.paths[i], &def, image->width, image->height, rgb);
+        const char *path = work->files.paths[i];
+        const gno_status status = layers != NULL && output_has_layers(path)
+                                      ? gno_picture_write_layers(scene, path, &def, rgb, layers)
+                                      : gno_picture_write(context, path, &def, image.width, image.height, rgb);
         if (status != GNO_OK) {
             return status;
         }
@@ -274,15 +294,27 @@ static int run_scene(const job *work, gno_context *context, gno_scene *scene, pr
         say("out of memory for a picture of %d x %d (%.1f GB)", image.width, image.height, (double)bytes * 1e-9);
         return EXIT_FAILED;
     }
+    gno_render_def how = work->def;
+    layer_buffers buffers;
+    const int has_layers = work->layers.wanted != 0;
+    if (has_layers && !layers_allocate(&work->layers, scene, &buffers)) {
+        say("out of memory for the layers of a picture of %d x %d", image.width, image.height);
+        gno_context_realloc(context, rgb, bytes, 0);
+        return EXIT_FAILED;
+    }
+    how.layers = has_layers ? &buffers.layers : NULL;
     const double rendered_from = seconds_now();
     interrupt_catch();
-    gno_status status = gno_render(scene, &work->def, rgb, &stats.engine);
+    gno_status status = gno_render(scene, &how, rgb, &stats.engine);
     progress_clear(shown);
     const double written_from = seconds_now();
     if (status == GNO_OK) {
-        status = write_pictures(work, context, &image, rgb);
+        status = write_pictures(work, scene, rgb, how.layers);
     }
     const double ended = seconds_now();
+    if (has_layers) {
+        layers_free(&buffers);
+    }
     gno_context_realloc(context, rgb, bytes, 0);
     if (status != GNO_OK) {
         return report(context, shown);
@@ -323,6 +355,7 @@ static int run(int argc, char **argv)
     memset(&work, 0, sizeof work);
     work.exposure = 1.0;
     work.def = gno_render_def_default();
+    work.layers = layers_none();
     /* No more settings than arguments; one more so that the size is never zero. */
     work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
     int status = EXIT_FAILED;

@@ -4,6 +4,7 @@
  */
 #include "base/parallel.h"
 #include "engine/tile.h"
+#include "scene/validate.h"
 #include <string.h>
 
 gno_render_def gno_render_def_default(void)
@@ -14,7 +15,34 @@ gno_render_def gno_render_def_default(void)
     def.refine_above = 0.02;
     def.threads = 0;
     def.terminator = GNO_TERMINATOR_EXACT;
+    def.layers = NULL;
     return def;
+}
+
+gno_layers gno_layers_default(void)
+{
+    gno_layers layers;
+    memset(&layers, 0, sizeof layers);
+    return layers;
+}
+
+static gno_status check_ranks(gno_context *context, const char *name, const gno_ranks *ranks)
+{
+    if (!ranks->id && !ranks->coverage)
+        return GNO_OK;
+    if (!ranks->id || !ranks->coverage)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "layers.%s: id and coverage must both be given", name);
+    if (ranks->count < 1 || ranks->count > GNO_MAX_RANKS)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "layers.%s.count: %d is not between 1 and %d", name, ranks->count, GNO_MAX_RANKS);
+    return GNO_OK;
+}
+
+static gno_status check_layers(gno_context *context, const gno_layers *layers)
+{
+    gno_status status = check_ranks(context, "polygons", &layers->polygons);
+    if (!status)
+        status = check_ranks(context, "objects", &layers->objects);
+    return status ? status : check_ranks(context, "materials", &layers->materials);
 }
 
 static gno_status check_def(gno_context *context, const gno_render_def *def)
@@ -31,7 +59,7 @@ static gno_status check_def(gno_context *context, const gno_render_def *def)
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "refine_above: %g is negative", def->refine_above);
     if (def->threads < 0 || def->threads > GNO_MAX_THREADS)
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "threads: %d is not between 0 and %d", def->threads, GNO_MAX_THREADS);
-    return GNO_OK;
+    return def->layers ? check_layers(context, def->layers) : GNO_OK;
 }
 
 typedef struct tile_job {
@@ -98,12 +126,39 @@ static gnoi_tone *make_tones(const gno_scene *scene)
     return tones;
 }
 
+/* The light that each lamp is of; NULL when memory fails. */
+static uint32_t *map_lamps(const gno_scene *scene, size_t lamp_count)
+{
+    uint32_t *light = gnoi_malloc(scene->context, lamp_count, sizeof *light);
+    size_t n = 0;
+    for (size_t i = 0; light && i < scene->light_count; i++)
+        for (size_t k = gnoi_light_points(&scene->lights[i].light); k > 0; k--)
+            light[n++] = (uint32_t)i;
+    return light;
+}
+
 /* Seconds since *from, which becomes now. */
 static double lap(double *from)
 {
     double now = gnoi_now(), seconds = now - *from;
     *from = now;
     return seconds;
+}
+
+/* Tables that all tiles read, and the tiles. */
+static gno_status draw_frame(gnoi_frame_job *frame, int threads, gno_stats *stats)
+{
+    const gno_scene *scene = frame->scene;
+    size_t lamps = (size_t)frame->lamp_count;
+    uint32_t *lamp_light = frame->layers ? map_lamps(scene, lamps) : NULL;
+    gno_status status = GNO_ERROR_MEMORY;
+    frame->lamp_light = lamp_light;
+    frame->tones = make_tones(scene);
+    if (frame->tones && (lamp_light || !frame->layers))
+        status = render_tiles(frame, threads, stats);
+    gnoi_free(scene->context, frame->tones, scene->material_count, sizeof *frame->tones);
+    gnoi_free(scene->context, lamp_light, lamps, sizeof *lamp_light);
+    return status;
 }
 
 static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
@@ -128,12 +183,11 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb
     frame.trees = scene->shadows->trees;
     frame.lamp_count = (int)scene->shadows->lamp_count;
     frame.rgb = rgb;
+    frame.layers = def->layers;
     status = gnoi_bins_build(scene, &frame.view, def->lines, threads, &frame.bins);
     stats->project_seconds = lap(&t);
-    frame.tones = status ? NULL : make_tones(scene);
     if (!status)
-        status = frame.tones ? render_tiles(&frame, threads, stats) : GNO_ERROR_MEMORY;
-    gnoi_free(scene->context, frame.tones, scene->material_count, sizeof *frame.tones);
+        status = draw_frame(&frame, threads, stats);
     stats->scan_seconds = lap(&t);
     stats->total_seconds = t - start;
     stats->polygons = (double)scene->prepared.poly_count;

@@ -18,7 +18,7 @@ int gnoi_tile_init(gnoi_tile *tile, const gnoi_frame_job *job)
     tile->batch.lamp_count = job->lamp_count;
     tile->batch.smooth_terminator = job->def.terminator == GNO_TERMINATOR_SMOOTH;
     tile->batch.view_start = job->bins.nearest_depth;
-    return tile->lit && tile->lit_colour && tile->batch.weight;
+    return tile->lit && tile->lit_colour && tile->batch.weight && gnoi_tile_layers_init(tile);
 }
 
 void gnoi_tile_free(gnoi_tile *tile)
@@ -41,6 +41,7 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_free(context, tile->columns, tile->column_capacity, sizeof *tile->columns);
     gnoi_free(context, tile->parts, tile->part_capacity, sizeof *tile->parts);
     gnoi_free(context, tile->intensities, tile->intensity_capacity, sizeof *tile->intensities);
+    gnoi_tile_layers_free(tile);
     gnoi_free(context, tile->lit, lamps, sizeof *tile->lit);
     gnoi_free(context, tile->lit_colour, lamps, sizeof *tile->lit_colour);
     gnoi_free(context, tile->batch.weight, lamps * GNOI_BATCH, sizeof *tile->batch.weight);
@@ -61,6 +62,8 @@ static void start_tile(gnoi_tile *tile, size_t index)
     for (int i = 0; i < job->def.base_lines && i < GNOI_BASE_LINES; i++)
         memset(tile->line_acc[i], 0, sizeof tile->line_acc[i]);
     memset(tile->thin, 0, sizeof tile->thin);
+    if (job->layers)
+        gnoi_tile_layers_start(tile);
 }
 
 /* Lines y = (i + 1/2) / base in every row; the rows of the apron have only the one next to the tile. */
@@ -103,15 +106,17 @@ typedef struct run {
     int first, last;
 } run;
 
+static int needs_lines(const gnoi_tile *tile, int i) { return tile->thin[i] || bends(tile, i); }
+
 /* Runs of pixels of a row that need all lines; returns how many. */
-static int find_runs(const gnoi_tile *tile, int row, run runs[GNOI_TILE_W])
+static int find_runs(const gnoi_tile *tile, int row, int (*need)(const gnoi_tile *tile, int i), int gap, run runs[GNOI_TILE_W])
 {
     int n = 0;
     for (int x = 0; x < tile->width; x++) {
         int i = row * GNOI_TILE_W + x;
-        if (!tile->thin[i] && !bends(tile, i))
+        if (!need(tile, i))
             continue;
-        if (n == 0 || x - runs[n - 1].last > RUN_GAP)
+        if (n == 0 || x - runs[n - 1].last > gap)
             runs[n++].first = x;
         runs[n - 1].last = x;
     }
@@ -126,19 +131,19 @@ static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_co
         for (int k = 0; k < run_count && i % factor != factor / 2; k++)
             gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, runs[k].first * GNOI_X_ONE,
                            (runs[k].last + 1) * GNOI_X_ONE);
-    for (int k = 0; k < run_count; k++)
+    for (int k = 0; k < run_count && !tile->fragments.alone; k++)
         tile->refined += runs[k].last - runs[k].first + 1;
 }
 
-/* Adds lines where the colour bends; returns 0 when it does nowhere. */
-static int plan_refinement(gnoi_tile *tile)
+/* Adds lines where they are needed; returns 0 when they are nowhere. gap: as RUN_GAP. */
+static int plan_refinement(gnoi_tile *tile, int (*need)(const gnoi_tile *tile, int i), int gap)
 {
     gnoi_lines_reset(&tile->lines);
     tile->row_line[0] = 0;
     for (int row = 1; row <= tile->height; row++) {
         run runs[GNOI_TILE_W];
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
-        add_fine_lines(tile, row, runs, find_runs(tile, row, runs));
+        add_fine_lines(tile, row, runs, find_runs(tile, row, need, gap, runs));
     }
     tile->row_line[tile->height + 1] = tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
     return tile->lines.line_count > 0;
@@ -166,6 +171,20 @@ static void make_rows(gnoi_tile *tile)
     gnoi_tile_flush(tile);
 }
 
+/* Where the colour called for no more lines the layers still may; the picture, which is written already, stays as it is. A pixel
+ * must not get its lines twice, so no gap between runs is closed. */
+static void make_layers(gnoi_tile *tile, const uint32_t *items, size_t count)
+{
+    tile->fragments.alone = 1;
+    if (tile->job->def.lines > tile->job->def.base_lines && plan_refinement(tile, gnoi_tile_layers_need, 1)) {
+        gnoi_tile_draw(tile, items, count);
+        make_rows(tile);
+    }
+    tile->fragments.alone = 0;
+    if (!tile->failed)
+        gnoi_tile_layers_write(tile);
+}
+
 int gnoi_tile_render(gnoi_tile *tile, size_t index)
 {
     const gnoi_frame_job *job = tile->job;
@@ -180,10 +199,12 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
     gnoi_tile_draw(tile, items, count);
     make_rows(tile);
     tile->judging = 0;
-    if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile)) {
+    if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile, needs_lines, RUN_GAP)) {
         gnoi_tile_draw(tile, items, count);
         make_rows(tile);
     }
     write_pixels(tile);
+    if (job->layers && !tile->failed)
+        make_layers(tile, items, count);
     return !tile->failed && !tile->lines.failed;
 }

@@ -5,6 +5,7 @@
  *        -> tile_light.c: a column of each lamp's shadow matrix for every surface seen
  *        -> tile_rows.c: visible pieces of a pixel row -> coverage by surface and pixel, split by shadow polygons
  *        -> tile_shade.c: one sample for each pixel and surface -> lighting -> the tile's picture
+ *        -> tile_layers.c: what covers how much of each pixel -> layers beside the picture, where they are asked for
  *        -> tile.c: which pixels vary and get more lines; the tile's part of the picture
  * Invariants: a tile depends on nothing but the frame, so that any thread may make it; each line adds a coverage of exactly
  * one pixel to each pixel it crosses.
@@ -36,6 +37,8 @@ typedef struct gnoi_frame_job {
     const gnoi_tree *trees;
     int lamp_count;
     float *rgb;
+    const gno_layers *layers; /* NULL: none */
+    const uint32_t *lamp_light; /* with layers: the scene's light that a lamp is of */
 } gnoi_frame_job;
 
 /* Rows of the tile, with one row of apron above and below (the one line next to the tile is made there, to judge its border by). */
@@ -68,6 +71,24 @@ typedef struct gnoi_cells {
     float length[GNOI_TILE_W], mx[GNOI_TILE_W], my[GNOI_TILE_W];
     float by_line[GNOI_BASE_LINES][GNOI_TILE_W]; /* length on each base line; not kept for finer lines */
 } gnoi_cells;
+
+/* What a surface covers of one pixel, on the base lines or on the finer ones: as gnoi_cells. */
+typedef struct gnoi_fragment {
+    uint32_t pixel, slot;
+    float length, mx, my;
+} gnoi_fragment;
+
+/* Storage of tile_layers.c; empty when no layers are asked for. */
+typedef struct gnoi_fragments {
+    size_t count, capacity;
+    gnoi_fragment *list;
+    size_t order_capacity, scratch_capacity;
+    gnoi_keyed *order, *scratch;
+    float (*light)[GNOI_TILE_PIXELS]; /* one for each light of the scene: lines times the share of its rays that arrives */
+    uint32_t sole[GNOI_TILE_PIXELS];  /* what alone is seen there on the base lines, as a hash of what the layers tell apart */
+    float sole_length[GNOI_TILE_PIXELS];
+    int alone;                        /* lines are being made for the layers alone: no colour is wanted */
+} gnoi_fragments;
 
 typedef struct gnoi_tile {
     const gnoi_frame_job *job;
@@ -108,6 +129,7 @@ typedef struct gnoi_tile {
     unsigned char thin[GNOI_TILE_PIXELS];  /* something thin passes: to be refined whatever the base lines saw */
     float cover_by_line[GNOI_BASE_LINES][GNOI_BATCH]; /* beside the batch */
     double spans, shaded, refined;
+    gnoi_fragments fragments;
 } gnoi_tile;
 
 /* Makes a tile worker ready; returns 0 when memory fails. Free in any case. */
@@ -137,5 +159,16 @@ void gnoi_tile_row(gnoi_tile *tile, int row);
  * term; else the part that one lamp alone reaches, with this factor on the light. Flushed when the batch is full. */
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint);
 void gnoi_tile_flush(gnoi_tile *tile);
+
+/* tile_layers.c: keeps what tile.cells and tile.lit hold of a pixel of `slot` in `row`; writes the tile's part of the layers from
+ * all that was kept. init returns 0 when memory fails; free in any case. */
+int gnoi_tile_layers_init(gnoi_tile *tile);
+void gnoi_tile_layers_free(gnoi_tile *tile);
+void gnoi_tile_layers_start(gnoi_tile *tile);
+
+/* Whether pixel i, which has base lines only, needs all lines for its layers. */
+int gnoi_tile_layers_need(const gnoi_tile *tile, int i);
+void gnoi_tile_layers_keep(gnoi_tile *tile, uint32_t slot, const gnoi_column *columns, int row, int pixel);
+void gnoi_tile_layers_write(gnoi_tile *tile);
 
 #endif

@@ -191,7 +191,10 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
             tile->row_cover[pixel] += tile->cells.length[pixel];
             for (int i = 0; i < tile->job->def.base_lines && tile->judging; i++)
                 tile->row_by_line[i][pixel] += tile->cells.by_line[i][pixel];
-            sample_pixel(tile, slot, columns, row, pixel);
+            if (tile->job->layers)
+                gnoi_tile_layers_keep(tile, (uint32_t)(slot - tile->slots), columns, row, pixel);
+            if (!tile->fragments.alone)
+                sample_pixel(tile, slot, columns, row, pixel);
         }
 }
 

@@ -64,35 +64,44 @@ static gno_status refuse(gno_context *context, const char *path, const char *wha
     return gno_context_fail(context, GNO_ERROR_ARGUMENT, text);
 }
 
-gno_status gno_picture_write(gno_context *context, const char *path, const gno_picture_def *def, int width, int height, const float *rgb)
+static gno_status check(gno_context *context, const char *path, const gno_picture_def *def, const format *chosen,
+                        const gnoi_picture *picture)
 {
-    if (context == NULL) {
-        return GNO_ERROR_ARGUMENT;
-    }
-    if (path == NULL || rgb == NULL) {
-        return gno_context_fail(context, GNO_ERROR_ARGUMENT, "gno_picture_write: path and rgb must be given");
-    }
-    const gno_picture_def used = def != NULL ? *def : gno_picture_def_default();
-    const format *chosen = find_format(path, used.format);
     char text[200];
     if (chosen == NULL) {
         return refuse(context, path, "the extension is not one of .png, .exr, .pfm");
     }
-    if (width < 1 || height < 1 || width > GNO_MAX_IMAGE_SIDE || height > GNO_MAX_IMAGE_SIDE) {
-        snprintf(text, sizeof text, "a picture of %d x %d is not between 1 x 1 and %d x %d", width, height, GNO_MAX_IMAGE_SIDE,
-                 GNO_MAX_IMAGE_SIDE);
+    if (picture->width < 1 || picture->height < 1 || picture->width > GNO_MAX_IMAGE_SIDE || picture->height > GNO_MAX_IMAGE_SIDE) {
+        snprintf(text, sizeof text, "a picture of %d x %d is not between 1 x 1 and %d x %d", picture->width, picture->height,
+                 GNO_MAX_IMAGE_SIDE, GNO_MAX_IMAGE_SIDE);
         return refuse(context, path, text);
     }
-    if (used.depth != GNO_DEPTH_DEFAULT && (int)used.depth != chosen->depths[0] && (int)used.depth != chosen->depths[1]) {
-        snprintf(text, sizeof text, "%s has no depth of %d bits, only of %s", chosen->name, (int)used.depth, chosen->depth_text);
+    if (def->depth != GNO_DEPTH_DEFAULT && (int)def->depth != chosen->depths[0] && (int)def->depth != chosen->depths[1]) {
+        snprintf(text, sizeof text, "%s has no depth of %d bits, only of %s", chosen->name, (int)def->depth, chosen->depth_text);
         return refuse(context, path, text);
     }
-    if (!(used.exposure >= 0.0) || isinf(used.exposure)) {
+    if (!(def->exposure >= 0.0) || isinf(def->exposure)) {
         return refuse(context, path, "the exposure must be a number, 0 or more");
     }
-    gnoi_picture picture = {rgb, width, height, used.depth == GNO_DEPTH_DEFAULT ? chosen->depths[0] : (int)used.depth, used.exposure};
+    if (picture->channel_count > 0 && chosen->id != GNO_FORMAT_EXR) {
+        return refuse(context, path, "layers need an .exr file");
+    }
+    return GNO_OK;
+}
+
+gno_status gnoi_picture_write(gno_context *context, const char *path, const gno_picture_def *def, const gnoi_picture *given)
+{
+    const gno_picture_def used = def != NULL ? *def : gno_picture_def_default();
+    const format *chosen = find_format(path, used.format);
+    gnoi_picture picture = *given;
     gnoi_file file;
-    gno_status status = gnoi_file_open(context, path, chosen->seeks, &file);
+    gno_status status = check(context, path, &used, chosen, given);
+    if (status != GNO_OK) {
+        return status;
+    }
+    picture.depth = used.depth == GNO_DEPTH_DEFAULT ? chosen->depths[0] : (int)used.depth;
+    picture.exposure = used.exposure;
+    status = gnoi_file_open(context, path, chosen->seeks, &file);
     if (status != GNO_OK) {
         return status;
     }
@@ -102,4 +111,20 @@ gno_status gno_picture_write(gno_context *context, const char *path, const gno_p
         return status;
     }
     return gnoi_file_commit(&file);
+}
+
+gno_status gno_picture_write(gno_context *context, const char *path, const gno_picture_def *def, int width, int height, const float *rgb)
+{
+    gnoi_picture picture;
+    if (context == NULL) {
+        return GNO_ERROR_ARGUMENT;
+    }
+    if (path == NULL || rgb == NULL) {
+        return gno_context_fail(context, GNO_ERROR_ARGUMENT, "gno_picture_write: path and rgb must be given");
+    }
+    memset(&picture, 0, sizeof picture);
+    picture.rgb = rgb;
+    picture.width = width;
+    picture.height = height;
+    return gnoi_picture_write(context, path, def, &picture);
 }

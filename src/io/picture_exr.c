@@ -1,4 +1,4 @@
-/* picture_exr.c -- OpenEXR, linear R, G, B as half or float, scan lines in ZIP blocks.
+/* picture_exr.c -- OpenEXR, linear R, G, B as half or float and any further channels in 32 bits, scan lines in ZIP blocks.
  *
  * Place: encoder under picture.c, through OpenEXRCore (the C part of OpenEXR). OpenEXRCore seeks back at the end to write
  * its table of blocks, and its exr_finish reports success even for an unfinished file; therefore writing goes through our own
@@ -13,13 +13,16 @@
 /* Values beyond half's range would become infinite, which spreads to whole neighbourhoods in every later filter. */
 #define HALF_LARGEST 65504.0
 
+#define SHORT_NAME 31
+
 typedef struct encoder {
     const gnoi_picture *picture;
     gnoi_file *file;
     exr_context_t exr;
     exr_encode_pipeline_t pipeline;
     int part;
-    float *block; /* the rows of one chunk, interleaved, after exposure */
+    int rows;     /* of a chunk */
+    float *block; /* the rows of one chunk: R, G, B interleaved, after exposure, then the further channels one after the other */
     char message[200];
 } encoder;
 
@@ -44,11 +47,39 @@ static void on_error(exr_const_context_t exr, exr_result_t code, const char *tex
     }
 }
 
+static float *channel_block(const encoder *e, size_t index)
+{
+    return e->block + (3 + index) * (size_t)e->rows * (size_t)e->picture->width;
+}
+
+/* The rows of one further channel; numbers without a table keep their bits. */
+static void fill_channel(encoder *e, size_t index, int first, int rows)
+{
+    const gnoi_channel *c = &e->picture->channels[index];
+    const size_t values = (size_t)rows * (size_t)e->picture->width, start = (size_t)first * (size_t)e->picture->width;
+    const float *reals = c->values;
+    const unsigned *numbers = c->values;
+    float *out = channel_block(e, index);
+    for (size_t i = 0; i < values; i++) {
+        const size_t at = (start + i) * c->step;
+        if (c->table != NULL) {
+            out[i] = numbers[at] == GNO_BACKGROUND ? 0 : c->table[numbers[at]];
+        } else if (c->is_number) {
+            memcpy(&out[i], &numbers[at], sizeof out[i]);
+        } else {
+            out[i] = reals[at];
+        }
+    }
+}
+
 static void fill_block(encoder *e, int first, int rows)
 {
     const float *source = gnoi_picture_row(e->picture, first);
     const size_t values = (size_t)rows * (size_t)e->picture->width * 3;
     const double exposure = e->picture->exposure;
+    for (size_t i = 0; i < e->picture->channel_count; i++) {
+        fill_channel(e, i, first, rows);
+    }
     if (e->picture->depth == 32) {
         for (size_t i = 0; i < values; i++) {
             e->block[i] = (float)(source[i] * exposure);
@@ -61,18 +92,54 @@ static void fill_block(encoder *e, int first, int rows)
     }
 }
 
-/* Channels come sorted by name, so the offset into the triple follows from the name. */
+static void point_channel(const encoder *e, exr_coding_channel_info_t *channel)
+{
+    static const char letters[] = "RGB";
+    const char *letter = channel->channel_name[1] == '\0' ? strchr(letters, channel->channel_name[0]) : NULL;
+    size_t step = 1, i = 0;
+    const float *from;
+    if (letter != NULL) {
+        from = e->block + (letter - letters);
+        step = 3;
+    } else {
+        while (strcmp(e->picture->channels[i].name, channel->channel_name) != 0) {
+            i++;
+        }
+        from = channel_block(e, i);
+    }
+    channel->encode_from_ptr = (const uint8_t *)from;
+    channel->user_pixel_stride = (int)(step * sizeof(float));
+    channel->user_line_stride = (int)((size_t)e->picture->width * step * sizeof(float));
+    channel->user_bytes_per_element = sizeof(float);
+    channel->user_data_type = letter == NULL && channel->data_type == EXR_PIXEL_UINT ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+}
+
+/* Channels come sorted by name. */
 static void point_channels(encoder *e)
 {
     for (int c = 0; c < e->pipeline.channel_count; c++) {
-        exr_coding_channel_info_t *channel = &e->pipeline.channels[c];
-        const int offset = channel->channel_name[0] == 'R' ? 0 : channel->channel_name[0] == 'G' ? 1 : 2;
-        channel->encode_from_ptr = (const uint8_t *)(e->block + offset);
-        channel->user_pixel_stride = 3 * (int)sizeof(float);
-        channel->user_line_stride = e->picture->width * 3 * (int)sizeof(float);
-        channel->user_bytes_per_element = sizeof(float);
-        channel->user_data_type = EXR_PIXEL_FLOAT;
+        point_channel(e, &e->pipeline.channels[c]);
     }
+}
+
+/* Names of channels and entries of the head may be longer than the 31 letters that old readers allow; then the file says so. */
+static exr_result_t add_further(encoder *e)
+{
+    exr_result_t result = EXR_ERR_SUCCESS;
+    for (size_t i = 0; i < e->picture->channel_count && result == EXR_ERR_SUCCESS; i++) {
+        if (strlen(e->picture->channels[i].name) > SHORT_NAME) {
+            result = exr_set_longname_support(e->exr, 1);
+        }
+    }
+    for (size_t i = 0; i < e->picture->channel_count && result == EXR_ERR_SUCCESS; i++) {
+        const gnoi_channel *c = &e->picture->channels[i];
+        const exr_pixel_type_t type = c->is_number && c->table == NULL ? EXR_PIXEL_UINT : EXR_PIXEL_FLOAT;
+        result = exr_add_channel(e->exr, e->part, c->name, type, EXR_PERCEPTUALLY_LINEAR, 1, 1);
+    }
+    for (size_t i = 0; i < e->picture->note_count && result == EXR_ERR_SUCCESS; i++) {
+        result = exr_attr_set_string(e->exr, e->part, e->picture->notes[i].name, e->picture->notes[i].text);
+    }
+    return result;
 }
 
 static exr_result_t start(encoder *e)
@@ -93,6 +160,9 @@ static exr_result_t start(encoder *e)
     }
     for (int c = 0; c < 3 && result == EXR_ERR_SUCCESS; c++) {
         result = exr_add_channel(e->exr, e->part, names[c], type, EXR_PERCEPTUALLY_LOGARITHMIC, 1, 1);
+    }
+    if (result == EXR_ERR_SUCCESS) {
+        result = add_further(e);
     }
     return result == EXR_ERR_SUCCESS ? exr_write_header(e->exr) : result;
 }
@@ -133,7 +203,8 @@ gno_status gnoi_picture_exr(const gnoi_picture *picture, gnoi_file *file)
         result = exr_get_scanlines_per_chunk(e.exr, e.part, &rows);
     }
     if (result == EXR_ERR_SUCCESS) {
-        bytes = (size_t)rows * (size_t)picture->width * 3 * sizeof(float);
+        e.rows = rows;
+        bytes = (size_t)rows * (size_t)picture->width * (3 + picture->channel_count) * sizeof(float);
         e.block = gno_context_realloc(file->context, NULL, 0, bytes);
         result = e.block != NULL ? write_blocks(&e, rows) : EXR_ERR_OUT_OF_MEMORY;
     }
