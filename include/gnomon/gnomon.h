@@ -120,6 +120,67 @@ typedef enum gno_shading {
     GNO_SHADING_PHONG = 3
 } gno_shading;
 
+typedef enum gno_texture_kind {
+    GNO_TEXTURE_NONE = 0,
+    GNO_TEXTURE_IMAGE = 1,
+    GNO_TEXTURE_PROCEDURAL = 2 /* a function of the point in the coordinates of the mesh before its transform */
+} gno_texture_kind;
+
+/* How a point of a surface finds its place (S, T) on the pattern. Points are those of the mesh before its transform, so that
+ * a pattern moves, turns and grows with its object. Polygons without texture coordinates take `planar` along the two
+ * axes that their normal lies farthest from. */
+typedef enum gno_texture_map {
+    GNO_MAP_UV = 0,         /* the mesh's texture coordinates */
+    GNO_MAP_PLANAR = 1,     /* P = origin + S u + T v, whatever lies along u x v: a parallel projection */
+    GNO_MAP_CYLINDRICAL = 2, /* about the axis v through the origin: S the angle in degrees, from u towards v x u; T v the height */
+    GNO_MAP_SPHERICAL = 3   /* S as for a cylinder, T the angle in degrees from the axis v, 0 to 180 (8.5) */
+} gno_texture_map;
+
+/* What stands beside the pattern. */
+typedef enum gno_wrap {
+    GNO_WRAP_REPEAT = 0,
+    GNO_WRAP_CLAMP = 1,  /* its border goes on */
+    GNO_WRAP_MIRROR = 2, /* it repeats, every other time mirrored */
+    GNO_WRAP_NONE = 3    /* nothing: the material's plain colour */
+} gno_wrap;
+
+typedef enum gno_texture_filter {
+    GNO_FILTER_BOX = 0,   /* elements are squares of one colour, weighted by the share of each in the pixel */
+    GNO_FILTER_LINEAR = 1 /* enlarged elements blend into each other */
+} gno_texture_filter;
+
+/* A pattern that multiplies ambient and diffuse coefficients (`t` of 8.1.7). Linear in (S, T): the pattern's lower left corner
+ * lies at corners[0], its upper right one at corners[1]; then one pattern is made `scale` times as large. Where all of corners
+ * is zero the map's own hold: (0,0) and (1,1), for a cylinder (0,0) and (360,1), for a sphere (0,180) and (360,0). */
+typedef struct gno_texture {
+    gno_texture_kind kind;
+    int image;             /* of gno_scene_add_image; its alpha makes holes in the surface */
+    gno_texture_map map;
+    double origin[3];      /* default 0 */
+    double u[3], v[3];     /* default x and y; not parallel. cylindrical, spherical: u x and v z; only u's part across v counts */
+    double corners[2][2];
+    double scale[2];       /* default 1, not 0; negative turns the pattern round */
+    gno_wrap wrap;
+    gno_texture_filter filter;
+} gno_texture;
+
+/* kind none, map as given; the other fields as that map's defaults. */
+GNO_API gno_texture gno_texture_default(gno_texture_map map);
+
+typedef enum gno_bump_kind {
+    GNO_BUMP_NONE = 0,
+    GNO_BUMP_HEIGHT = 1, /* the mean of red, green and blue is a height over the surface (8.6.7) */
+    GNO_BUMP_NORMAL = 2  /* red, green, blue in [0,1] are twice a normal's parts along S, along T and outwards, plus one */
+} gno_bump_kind;
+
+/* Turns the normal before lighting; edges and shadows stay as they are. Taken at every sample of flat and phong surfaces. */
+typedef struct gno_bump {
+    gno_bump_kind kind;
+    gno_texture texture; /* an image of linear values, or procedural; where it lies */
+    double amount;       /* height: how far white stands over black, as a share of the pattern's size, so that the look does not
+                            depend on the object's. normal: factor on the parts along the surface. Default 1 */
+} gno_bump;
+
 /* Coefficients of the simple lighting model (8.1.7), three channels each, >= 0. */
 typedef struct gno_material {
     double ambient[3];      /* ka; default 0.8 */
@@ -129,6 +190,8 @@ typedef struct gno_material {
     double transmission[3]; /* share of light passed to what lies behind, in [0,1]; default 0 (opaque) */
     gno_shading shading;    /* default flat */
     int two_sided;          /* default 1; 0: not drawn from behind, but casts shadows both ways */
+    gno_texture texture;    /* default none */
+    gno_bump bump;          /* default none */
 } gno_material;
 
 GNO_API gno_material gno_material_default(void);
@@ -214,6 +277,18 @@ GNO_API gno_status gno_scene_create(gno_context *context, gno_scene **scene);
 GNO_API void gno_scene_destroy(gno_scene *scene); /* accepts NULL */
 GNO_API gno_context *gno_scene_context(const gno_scene *scene);
 
+/* A picture for textures, top row first. Exactly one of `linear` and `bytes` is given. */
+typedef struct gno_pixels {
+    int width, height;          /* 1 to GNO_MAX_IMAGE_SIDE */
+    int channels;               /* 1 grey, 2 grey and alpha, 3 RGB, 4 RGB and alpha (0 a hole, 1 solid; not multiplied in) */
+    const float *linear;        /* channels values a pixel, finite */
+    const unsigned char *bytes; /* the same in 8 bits */
+    int encoded;                /* bytes: 1 sRGB (alpha is linear always), 0 linear, as heights and normals are */
+} gno_pixels;
+
+/* Copies a picture into the scene, with its prefiltered levels. Index may be NULL. Errors: MEMORY, ARGUMENT, LIMIT. */
+GNO_API gno_status gno_scene_add_image(gno_scene *scene, const gno_pixels *pixels, int *index);
+
 /* Index may be NULL. Errors: MEMORY, ARGUMENT (values not finite or out of range), LIMIT. */
 GNO_API gno_status gno_scene_add_material(gno_scene *scene, const gno_material *material, int *index);
 GNO_API gno_status gno_scene_add_light(gno_scene *scene, const char *name, const gno_light *light, int *index);
@@ -239,7 +314,7 @@ GNO_API gno_image_def gno_image_def_default(void);
 /* ---- reading a scene back -------------------------------------------------------------------------------------- */
 
 typedef struct gno_scene_counts {
-    size_t vertices, polygons, rings, corners, normals, texcoords, materials, lights, objects;
+    size_t vertices, polygons, rings, corners, normals, texcoords, materials, lights, objects, images;
 } gno_scene_counts;
 
 GNO_API gno_scene_counts gno_scene_count(const gno_scene *scene);

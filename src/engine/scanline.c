@@ -122,6 +122,7 @@ static gnoi_tone *make_tones(const gno_scene *scene)
             tones[i].specular[k] = (float)m->specular[k];
         }
         tones[i].shininess = (float)m->shininess;
+        tones[i].textured = m->texture.kind != GNO_TEXTURE_NONE;
     }
     return tones;
 }

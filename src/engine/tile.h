@@ -18,12 +18,14 @@
 #include "scan/lines.h"
 #include "shade/batch.h"
 #include "shade/interp.h"
+#include "shade/texture.h"
 #include "shadow/cache.h"
 #include "shadow/column.h"
 
 /* A material in single precision, `ambient` times the scene's ambient light. */
 typedef struct gnoi_tone {
     float ambient[3], diffuse[3], specular[3], shininess;
+    int textured;
 } gnoi_tone;
 
 /* What all tiles of one picture share; read only while tiles are made. */
@@ -63,6 +65,7 @@ typedef struct gnoi_slot {
     gnoi_interp interp;
     uint32_t first_intensity; /* constant, gouraud: intensities in tile.intensities, GNOI_NONE until needed */
     uint32_t intensity_triangle; /* gouraud: of the interpolation, whose corners they are */
+    uint32_t mapping;         /* textured: in tile.mappings, GNOI_NONE until needed */
 } gnoi_slot;
 
 /* Coverage of one surface, or of its lit part, along a pixel row: sums over pieces of length, and of length times the
@@ -123,6 +126,9 @@ typedef struct gnoi_tile {
     gnoi_batch batch;
     size_t intensity_count, intensity_capacity;
     double (*intensities)[3];
+    size_t mapping_count, mapping_capacity;
+    gnoi_mapping *mappings;
+    float texel[4];                        /* of the pixel and surface sampled last, where it is textured */
     float acc[3][GNOI_TILE_PIXELS];        /* sums over lines */
     float weight[GNOI_TILE_PIXELS];        /* lines that cover the pixel */
     float line_acc[GNOI_BASE_LINES][3][GNOI_TILE_PIXELS]; /* the pixel's colour on each base line */

@@ -175,7 +175,7 @@ static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
     }
     slot = &tile->slots[tile->slot_count];
     depth = &lines->depths[tile->slot_count];
-    slot->first_column = slot->first_intensity = GNOI_NONE;
+    slot->first_column = slot->first_intensity = slot->mapping = GNOI_NONE;
     slot->intensity_triangle = GNOI_NONE;
     slot->chain = 0;
     slot->interp.ready = 0;

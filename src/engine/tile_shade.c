@@ -2,8 +2,10 @@
  *
  * Flat and phong surfaces are lit in batches (shade/batch.h); constant and gouraud ones carry intensities taken once at the
  * centroid or at the corners, interpolated for each lamp, so that the shadow still cuts them exactly.
+ * A texture is taken once for each pixel of a surface, filtered over the whole pixel, and is a factor on all of the pixel's samples.
  */
 #include "engine/tile.h"
+#include <string.h>
 
 static int is_precomputed(const gnoi_slot *slot)
 {
@@ -61,13 +63,20 @@ static vec3 viewer_normal(const gnoi_slot *slot)
     return v3_scale(v3_from(slot->receiver.poly->n), slot->receiver.side < 0 ? -1 : 1);
 }
 
+/* Intensities of a lamp: the diffuse one, which a texture acts on, and the specular one. */
+enum { INTENSITY_PARTS = 2 };
+
 static void set_intensity(const gnoi_frame_job *job, const gnoi_slot *slot, vec3 point, vec3 n, double (*rgb)[3])
 {
-    const gno_material *material = &job->scene->materials[slot->receiver.poly->material];
-    for (int j = 0; j < job->lamp_count; j++) {
-        rgb[j][0] = rgb[j][1] = rgb[j][2] = 0;
-        gnoi_shade_point(&job->view, &job->lamps[j], material, (double)job->bins.nearest_depth, point, n, rgb[j]);
-    }
+    gno_material part[INTENSITY_PARTS];
+    part[0] = part[1] = job->scene->materials[slot->receiver.poly->material];
+    memset(part[0].specular, 0, sizeof part[0].specular);
+    memset(part[1].diffuse, 0, sizeof part[1].diffuse);
+    for (int j = 0; j < job->lamp_count; j++)
+        for (int i = 0; i < INTENSITY_PARTS; i++, rgb++) {
+            (*rgb)[0] = (*rgb)[1] = (*rgb)[2] = 0;
+            gnoi_shade_point(&job->view, &job->lamps[j], &part[i], (double)job->bins.nearest_depth, point, n, *rgb);
+        }
 }
 
 /* The interpolated normal of a corner, turned to the viewer's side of the plane. */
@@ -84,16 +93,16 @@ static double (*seek_intensities(gnoi_tile *tile, gnoi_slot *slot, double x, dou
 {
     const gnoi_frame_job *job = tile->job;
     const gnoi_poly *poly = slot->receiver.poly;
-    size_t lamps = (size_t)job->lamp_count;
+    size_t count = (size_t)job->lamp_count * INTENSITY_PARTS;
     int gouraud = poly->shading == GNO_SHADING_GOURAUD;
     if (slot->first_intensity == GNOI_NONE) {
         if (!gnoi_reserve(tile->lines.context, (void **)&tile->intensities, &tile->intensity_capacity,
-                          tile->intensity_count + 3 * lamps + 1, sizeof *tile->intensities)) {
+                          tile->intensity_count + 3 * count + 1, sizeof *tile->intensities)) {
             tile->failed = 1;
             return NULL;
         }
         slot->first_intensity = (uint32_t)tile->intensity_count;
-        tile->intensity_count += 3 * lamps;
+        tile->intensity_count += 3 * count;
         if (!gouraud)
             set_intensity(job, slot, centroid(job->scene, poly), viewer_normal(slot), &tile->intensities[slot->first_intensity]);
     }
@@ -105,7 +114,7 @@ static double (*seek_intensities(gnoi_tile *tile, gnoi_slot *slot, double x, dou
         for (size_t i = 0; i < 3 && slot->intensity_triangle != slot->interp.triangle; i++) {
             uint32_t corner = slot->interp.corner[i];
             vec3 p = v3_from(job->scene->prepared.positions[job->scene->prepared.corner_vertex[corner]]);
-            set_intensity(job, slot, p, corner_normal(job, slot, corner), &tile->intensities[slot->first_intensity + i * lamps]);
+            set_intensity(job, slot, p, corner_normal(job, slot, corner), &tile->intensities[slot->first_intensity + i * count]);
         }
         slot->intensity_triangle = slot->interp.triangle;
         for (int i = 0; i < 3; i++) {
@@ -120,7 +129,7 @@ static double (*seek_intensities(gnoi_tile *tile, gnoi_slot *slot, double x, dou
 }
 
 static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, const gnoi_cells *cells,
-                               const float *tint)
+                               const float *tint, const float *texel)
 {
     const gnoi_frame_job *job = tile->job;
     const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
@@ -130,12 +139,14 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
     if (!intensity)
         return;
     for (int k = 0; k < 3; k++)
-        rgb[k] = tint ? 0 : coverage * tone->ambient[k];
+        rgb[k] = tint ? 0 : coverage * tone->ambient[k] * texel[k];
     for (size_t j = 0; j < lamps; j++) {
         float lamp_weight = tile->batch.weight[j * GNOI_BATCH + (size_t)tile->batch.count];
-        for (size_t i = 0; i < corners && lamp_weight > 0; i++)
+        for (size_t i = 0; i < corners && lamp_weight > 0; i++) {
+            const double(*part)[3] = (const double(*)[3])&intensity[(i * lamps + j) * INTENSITY_PARTS];
             for (int k = 0; k < 3; k++)
-                rgb[k] += lamp_weight * (tint ? tint[k] : 1) * (float)(w[i] * intensity[i * lamps + j][k]);
+                rgb[k] += lamp_weight * (tint ? tint[k] : 1) * (float)(w[i] * (part[0][k] * (double)texel[k] + part[1][k]));
+        }
     }
     tile->shaded++;
     add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, coverage, &cells->by_line[0][column], GNOI_TILE_W);
@@ -182,6 +193,32 @@ static void set_material(gnoi_batch *b, int i, const gnoi_tone *m, float coverag
     b->shininess[i] = m->shininess;
 }
 
+/* The texture of the slot's material in a pixel, seen at (x,y), to tile->texel. */
+static void set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y)
+{
+    const gnoi_frame_job *job = tile->job;
+    gnoi_sight sight = {job->scene, &job->view, slot->receiver.poly, &slot->receiver.nearness, &slot->interp};
+    if (slot->mapping == GNOI_NONE) {
+        if (!gnoi_reserve(tile->lines.context, (void **)&tile->mappings, &tile->mapping_capacity, tile->mapping_count + 1,
+                          sizeof *tile->mappings)) {
+            tile->failed = 1;
+            return;
+        }
+        slot->mapping = (uint32_t)tile->mapping_count++;
+        memset(&tile->mappings[slot->mapping], 0, sizeof *tile->mappings);
+    }
+    gnoi_texture_at(&sight, &job->scene->materials[slot->receiver.poly->material].texture, &tile->mappings[slot->mapping],
+                    tile->x0 + column + 0.5, tile->y0 + row - 0.5, x, y, tile->texel);
+}
+
+static void apply_texel(gnoi_batch *b, int i, const float texel[4])
+{
+    for (int k = 0; k < 3; k++) {
+        b->kd[k][i] *= texel[k];
+        b->rgb[k][i] *= texel[k];
+    }
+}
+
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint)
 {
     const gnoi_frame_job *job = tile->job;
@@ -189,14 +226,20 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     float coverage = cells->length[column];
     double x = tile->x0 + column + 0.5 + (double)(cells->mx[column] / coverage);
     double y = tile->y0 + row - 0.5 + (double)(cells->my[column] / coverage);
+    const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
     int i = b->count;
+    if (tone->textured && !tint)
+        set_texel(tile, slot, row, column, x, y);
     if (is_precomputed(slot)) {
-        sample_precomputed(tile, slot, row, column, x, y, cells, tint);
+        static const float plain[3] = {1, 1, 1};
+        sample_precomputed(tile, slot, row, column, x, y, cells, tint, tone->textured ? tile->texel : plain);
         return;
     }
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
     set_normal(b, i, job, slot, x, y);
-    set_material(b, i, &job->tones[slot->receiver.poly->material], coverage, tint);
+    set_material(b, i, tone, coverage, tint);
+    if (tone->textured)
+        apply_texel(b, i, tile->texel);
     b->coverage[i] = coverage;
     for (int l = 0; l < job->def.base_lines && tile->judging; l++)
         tile->cover_by_line[l][i] = cells->by_line[l][column];

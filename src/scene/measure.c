@@ -176,7 +176,7 @@ static void set_attributes(const gno_scene *scene, size_t p, gnoi_poly *poly)
     poly->source = (uint32_t)p;
     poly->shading = shading & 15u;
     poly->two_sided = material->two_sided != 0;
-    poly->opaque = t[0] == 0 && t[1] == 0 && t[2] == 0;
+    poly->opaque = t[0] == 0 && t[1] == 0 && t[2] == 0 && !gnoi_has_holes(scene, material);
     poly->material = (uint16_t)number;
     poly->priority = (int16_t)object->priority;
 }

@@ -470,6 +470,31 @@ static gno_status copy_polygons(const adding *a)
     return status;
 }
 
+/* The inverse of an affine transform; zeros where it has none. */
+static void invert(const double t[12], double inverse[12])
+{
+    vec3 rows[3], columns[3];
+    double det;
+    int i, k;
+    for (i = 0; i < 3; i++) {
+        rows[i] = v3(t[4 * i], t[4 * i + 1], t[4 * i + 2]);
+    }
+    det = v3_dot(rows[0], v3_cross(rows[1], rows[2]));
+    memset(inverse, 0, 12 * sizeof *inverse);
+    if (!(fabs(det) > 0) || !isfinite(1 / det)) {
+        return;
+    }
+    for (i = 0; i < 3; i++) {
+        columns[i] = v3_scale(v3_cross(rows[(i + 1) % 3], rows[(i + 2) % 3]), 1 / det);
+    }
+    for (i = 0; i < 3; i++) {
+        for (k = 0; k < 3; k++) {
+            inverse[4 * i + k] = i == 0 ? columns[k].x : i == 1 ? columns[k].y : columns[k].z;
+        }
+        inverse[4 * i + 3] = -(inverse[4 * i] * t[3] + inverse[4 * i + 1] * t[7] + inverse[4 * i + 2] * t[11]);
+    }
+}
+
 static gno_status copy_object(const adding *a)
 {
     const gno_mesh_def *m = a->mesh;
@@ -490,6 +515,7 @@ static gno_status copy_object(const adding *a)
     object->crease = m->crease;
     object->weighting = m->weighting;
     object->priority = m->priority;
+    invert(m->transform, object->to_local);
     return GNO_OK;
 }
 

@@ -103,6 +103,8 @@ static void copy_corner(ordering *o, uint32_t from, uint32_t to)
     int is_new;
     uint32_t old, v;
     o->to.corner_vertex[to] = vertex_number(o, o->from->corner_vertex[from]);
+    if (o->from->corner_texcoord)
+        o->to.corner_texcoord[to] = o->from->corner_texcoord[from];
     if (!o->from->corner_normal)
         return;
     old = o->from->corner_normal[from];
@@ -158,12 +160,15 @@ static int reserve(ordering *o)
     o->table = gnoi_malloc(context, (size_t)o->table_mask + 1, sizeof *o->table);
     if (from->corner_normal)
         to->corner_normal = gnoi_malloc(context, to->corner_capacity, sizeof *to->corner_normal);
+    if (from->corner_texcoord)
+        to->corner_texcoord = gnoi_malloc(context, to->corner_capacity, sizeof *to->corner_texcoord);
     if (from->normals)
         to->normals = gnoi_malloc(context, to->normal_capacity, sizeof *to->normals);
     if (from->triangles)
         to->triangles = gnoi_malloc(context, to->triangle_capacity, sizeof *to->triangles);
     return to->polys && to->ring_corner && to->corner_vertex && to->positions && o->vertices.of && o->normals.of && o->table &&
-           (!from->corner_normal || to->corner_normal) && (!from->normals || to->normals) && (!from->triangles || to->triangles);
+           (!from->corner_normal || to->corner_normal) && (!from->corner_texcoord || to->corner_texcoord) &&
+           (!from->normals || to->normals) && (!from->triangles || to->triangles);
 }
 
 gno_status gnoi_order_polygons(gno_scene *scene)

@@ -17,8 +17,8 @@
 typedef struct emitter {
     gno_scene *scene;
     gnoi_prepared *out;
-    size_t vertex_capacity, normal_capacity, ring_capacity, triangle_capacity;
-    uint32_t *vertex, *normal, *ring;
+    size_t vertex_capacity, normal_capacity, texcoord_capacity, ring_capacity, triangle_capacity;
+    uint32_t *vertex, *normal, *texcoord, *ring;
     uint32_t (*triangles)[3];
 } emitter;
 
@@ -30,6 +30,7 @@ void gnoi_prepared_free(gno_context *context, gnoi_prepared *prepared)
     gnoi_free(context, prepared->ring_corner, prepared->ring_capacity, sizeof *prepared->ring_corner);
     gnoi_free(context, prepared->corner_vertex, prepared->corner_capacity, sizeof *prepared->corner_vertex);
     gnoi_free(context, prepared->corner_normal, prepared->corner_capacity, sizeof *prepared->corner_normal);
+    gnoi_free(context, prepared->corner_texcoord, prepared->corner_capacity, sizeof *prepared->corner_texcoord);
     gnoi_free(context, prepared->solids, prepared->solid_count, sizeof *prepared->solids);
     gnoi_free(context, prepared->vertex_solid, prepared->vertex_capacity, sizeof *prepared->vertex_solid);
     gnoi_free(context, prepared->positions, prepared->vertex_capacity, sizeof *prepared->positions);
@@ -43,9 +44,20 @@ static gno_status out_of_memory(gno_scene *scene)
     return gnoi_fail(scene->context, GNO_ERROR_MEMORY, "prepare: out of memory");
 }
 
+/* 1 when a material asks for texture coordinates and there are any. */
+static int has_texcoords(const gno_scene *scene)
+{
+    size_t i = 0;
+    while (i < scene->material_count && !gnoi_is_mapped(&scene->materials[i])) {
+        i++;
+    }
+    return scene->texcoord_count > 0 && i < scene->material_count;
+}
+
 static gno_status allocate(gno_scene *scene, size_t rings, size_t corners, int smooth)
 {
     gnoi_prepared *out = &scene->prepared;
+    int mapped = has_texcoords(scene);
     if (rings >= GNOI_NONE || corners >= GNOI_NONE) {
         return gnoi_fail(scene->context, GNO_ERROR_LIMIT, "prepare: more than %u corners once split into triangles", GNOI_NONE);
     }
@@ -53,8 +65,9 @@ static gno_status allocate(gno_scene *scene, size_t rings, size_t corners, int s
     out->ring_capacity = out->ring_corner ? rings + 1 : 0;
     out->corner_vertex = gnoi_malloc(scene->context, corners, sizeof *out->corner_vertex);
     out->corner_normal = smooth ? gnoi_malloc(scene->context, corners, sizeof *out->corner_normal) : NULL;
-    out->corner_capacity = corners; /* of both; freeing passes over the one that is NULL */
-    if (!out->ring_corner || !out->corner_vertex || (smooth && !out->corner_normal)) {
+    out->corner_texcoord = mapped ? gnoi_malloc(scene->context, corners, sizeof *out->corner_texcoord) : NULL;
+    out->corner_capacity = corners; /* of all; freeing passes over those that are NULL */
+    if (!out->ring_corner || !out->corner_vertex || (smooth && !out->corner_normal) || (mapped && !out->corner_texcoord)) {
         return out_of_memory(scene);
     }
     return GNO_OK;
@@ -76,6 +89,9 @@ static gno_status copy_all(gno_scene *scene, int smooth)
     if (smooth) {
         memcpy(out->corner_normal, scene->corner_normal, scene->corner_count * sizeof *out->corner_normal);
     }
+    if (out->corner_texcoord) {
+        memcpy(out->corner_texcoord, scene->corner_texcoord, scene->corner_count * sizeof *out->corner_texcoord);
+    }
     out->poly_count = scene->polygon_count;
     out->ring_count = scene->ring_count;
     out->corner_count = scene->corner_count;
@@ -89,6 +105,7 @@ static void free_scratch(emitter *e)
     gno_context *context = e->scene->context;
     gnoi_free(context, e->vertex, e->vertex_capacity, sizeof *e->vertex);
     gnoi_free(context, e->normal, e->normal_capacity, sizeof *e->normal);
+    gnoi_free(context, e->texcoord, e->texcoord_capacity, sizeof *e->texcoord);
     gnoi_free(context, e->ring, e->ring_capacity, sizeof *e->ring);
     gnoi_free(context, e->triangles, e->triangle_capacity, sizeof *e->triangles);
 }
@@ -96,23 +113,28 @@ static void free_scratch(emitter *e)
 static int reserve_scratch(emitter *e, const gnoi_poly *poly)
 {
     gno_context *context = e->scene->context;
-    void *vertex = e->vertex, *normal = e->normal, *ring = e->ring, *triangles = e->triangles;
+    void *vertex = e->vertex, *normal = e->normal, *texcoord = e->texcoord, *ring = e->ring, *triangles = e->triangles;
     int good = gnoi_reserve(context, &vertex, &e->vertex_capacity, poly->corner_count, sizeof *e->vertex) &&
                gnoi_reserve(context, &normal, &e->normal_capacity, poly->corner_count, sizeof *e->normal) &&
+               gnoi_reserve(context, &texcoord, &e->texcoord_capacity, poly->corner_count, sizeof *e->texcoord) &&
                gnoi_reserve(context, &ring, &e->ring_capacity, (size_t)poly->ring_count + 1, sizeof *e->ring) &&
                gnoi_reserve(context, &triangles, &e->triangle_capacity, gnoi_triangles_of(poly), sizeof *e->triangles);
     e->vertex = vertex;
     e->normal = normal;
+    e->texcoord = texcoord;
     e->ring = ring;
     e->triangles = triangles;
     return good;
 }
 
-static void emit_corner(gnoi_prepared *out, uint32_t vertex, uint32_t normal)
+static void emit_corner(gnoi_prepared *out, uint32_t vertex, uint32_t normal, uint32_t texcoord)
 {
     out->corner_vertex[out->corner_count] = vertex;
     if (out->corner_normal) {
         out->corner_normal[out->corner_count] = normal;
+    }
+    if (out->corner_texcoord) {
+        out->corner_texcoord[out->corner_count] = texcoord;
     }
     out->corner_count++;
 }
@@ -137,7 +159,8 @@ static void emit_kept(emitter *e, gnoi_poly poly)
         }
         out->ring_corner[out->ring_count++] = (uint32_t)out->corner_count;
         for (corner = from; corner < to; corner++) {
-            emit_corner(out, (uint32_t)s->corner_vertex[corner], (uint32_t)s->corner_normal[corner]);
+            emit_corner(out, (uint32_t)s->corner_vertex[corner], (uint32_t)s->corner_normal[corner],
+                        (uint32_t)s->corner_texcoord[corner]);
         }
     }
     out->polys[out->poly_count++] = poly;
@@ -157,7 +180,8 @@ static void gather(emitter *e, const gnoi_poly *poly)
         e->ring[rings++] = corners;
         for (corner = from; corner < to; corner++) {
             e->vertex[corners] = (uint32_t)s->corner_vertex[corner];
-            e->normal[corners++] = (uint32_t)s->corner_normal[corner];
+            e->normal[corners] = (uint32_t)s->corner_normal[corner];
+            e->texcoord[corners++] = (uint32_t)s->corner_texcoord[corner];
         }
     }
     e->ring[rings] = corners;
@@ -188,7 +212,7 @@ static gno_status emit_split(emitter *e, gnoi_poly poly)
             place(out, &poly);
             out->ring_corner[out->ring_count++] = (uint32_t)out->corner_count;
             for (k = 0; k < 3; k++) {
-                emit_corner(out, vertex[k], e->normal[t[k]]);
+                emit_corner(out, vertex[k], e->normal[t[k]], e->texcoord[t[k]]);
             }
             out->polys[out->poly_count++] = poly;
         }
@@ -253,7 +277,7 @@ static gno_status emit_all(gno_scene *scene, const unsigned char *kinds, int smo
     return status == GNO_OK ? GNO_OK : out_of_memory(scene);
 }
 
-/* ---- triangulations of smooth polygons --------------------------------------------------------------------------- */
+/* ---- triangulations of smooth and mapped polygons --------------------------------------------------------------------------- */
 
 static gno_status triangulate_chunk(void *user, int worker, size_t piece)
 {
@@ -274,13 +298,14 @@ static gno_status triangulate_chunk(void *user, int worker, size_t piece)
     return status;
 }
 
-static gno_status triangulate_smooth(gno_scene *scene, int threads)
+static gno_status triangulate_some(gno_scene *scene, int threads)
 {
     gnoi_prepared *out = &scene->prepared;
     size_t count = 0, i;
     for (i = 0; i < out->poly_count; i++) {
         gnoi_poly *poly = &out->polys[i];
-        if (gnoi_is_smooth(poly) && poly->corner_count > 3) {
+        int mapped = out->corner_texcoord && gnoi_is_mapped(&scene->materials[poly->material]);
+        if ((gnoi_is_smooth(poly) || mapped) && poly->corner_count > 3) {
             poly->triangle = (uint32_t)count;
             count += gnoi_triangles_of(poly);
             if (count >= GNOI_NONE) {
@@ -310,8 +335,8 @@ static gno_status fill_prepared(gno_scene *scene, int threads, unsigned char *ki
         int good = measures.empty == 0 && measures.split == 0 && measures.dropped == 0;
         status = good ? copy_all(scene, measures.smooth) : emit_all(scene, kinds, measures.smooth);
     }
-    if (status == GNO_OK && measures.smooth) {
-        status = triangulate_smooth(scene, threads);
+    if (status == GNO_OK && (measures.smooth || out->corner_texcoord)) {
+        status = triangulate_some(scene, threads);
     }
     if (status == GNO_OK && measures.smooth) {
         status = gnoi_prepare_normals(scene);

@@ -30,6 +30,10 @@ gno_material gno_material_default(void)
     material.shininess = 1;
     material.shading = GNO_SHADING_FLAT;
     material.two_sided = 1;
+    material.texture = gno_texture_default(GNO_MAP_UV);
+    material.bump.kind = GNO_BUMP_NONE;
+    material.bump.texture = gno_texture_default(GNO_MAP_UV);
+    material.bump.amount = 1;
     return material;
 }
 
@@ -113,6 +117,7 @@ static void free_arrays(gno_context *context, gno_scene *scene)
     gnoi_free(context, scene->corner_texcoord, scene->corner_capacity, sizeof *scene->corner_texcoord);
     gnoi_free(context, scene->objects, scene->object_capacity, sizeof *scene->objects);
     gnoi_free(context, scene->materials, scene->material_capacity, sizeof *scene->materials);
+    gnoi_free(context, scene->images, scene->image_capacity, sizeof *scene->images);
     gnoi_free(context, scene->lights, scene->light_capacity, sizeof *scene->lights);
 }
 
@@ -132,6 +137,9 @@ void gno_scene_destroy(gno_scene *scene)
         gnoi_free(context, scene->lights[i].name, scene->lights[i].name_size, 1);
     }
     gnoi_scene_free_names(scene);
+    for (i = 0; i < scene->image_count; i++) {
+        gnoi_image_free(context, &scene->images[i]);
+    }
     free_arrays(context, scene);
     gnoi_free(context, scene, 1, sizeof *scene);
 }
@@ -161,6 +169,9 @@ gno_status gno_scene_add_material(gno_scene *scene, const gno_material *material
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "gno_scene_add_material: scene or material is NULL");
     }
     status = gnoi_check_material(context, material);
+    if (status == GNO_OK) {
+        status = gnoi_check_surface(scene, material);
+    }
     if (status != GNO_OK) {
         return status;
     }
@@ -337,6 +348,7 @@ gno_scene_counts gno_scene_count(const gno_scene *scene)
         counts.materials = scene->material_count;
         counts.lights = scene->light_count;
         counts.objects = scene->object_count;
+        counts.images = scene->image_count;
     }
     return counts;
 }

@@ -9,6 +9,7 @@
 
 #include "base/context.h"
 #include "base/vec.h"
+#include "scene/image.h"
 
 typedef struct gnoi_object {
     char *name; /* gnoi_malloc of name_size bytes, or NULL */
@@ -19,6 +20,7 @@ typedef struct gnoi_object {
     double crease;
     gno_weighting weighting;
     int priority;
+    double to_local[12]; /* rows of a 3x4 matrix from scene space to that before the transform; zeros where there is none */
 } gnoi_object;
 
 typedef struct gnoi_named_light {
@@ -39,12 +41,12 @@ typedef struct gnoi_poly {
     uint32_t corner;       /* = prepared.ring_corner[ring] */
     uint32_t corner_count; /* of all its rings */
     uint32_t triangle;     /* first of its corner_count + 2 (ring_count - 1) - 2 triangles in prepared.triangles,
-                              GNOI_NONE where no triangulation is kept (three corners, or not smooth) */
+                              GNOI_NONE where no triangulation is kept (three corners, or neither smooth nor mapped) */
     uint32_t source;       /* polygon number in the scene */
     uint32_t ring_count : 24;
     uint32_t shading : 4; /* gno_shading */
     uint32_t two_sided : 1;
-    uint32_t opaque : 1; /* transmission is zero in all channels */
+    uint32_t opaque : 1; /* transmission is zero in all channels, and the texture has no holes */
     uint16_t material;
     int16_t priority;
 } gnoi_poly;
@@ -73,6 +75,7 @@ typedef struct gnoi_prepared {
     gnoi_solid *solids;         /* connected parts */
     uint32_t *vertex_solid;     /* the part that a vertex belongs to */
     uint32_t *corner_normal;    /* index into normals, GNOI_NONE where the polygon is not smooth (NULL: no smooth polygon at all) */
+    uint32_t *corner_texcoord;  /* index into the scene's texcoords, GNOI_NONE for none (NULL: no material asks for them) */
     size_t normal_count, normal_capacity;
     float (*normals)[3];        /* unit */
     size_t triangle_count, triangle_capacity;
@@ -106,6 +109,8 @@ struct gno_scene {
     gno_material *materials;
     size_t material_name_count; /* at most material_count: the rest have none */
     gnoi_name_text *material_names;
+    size_t image_count, image_capacity;
+    gnoi_image *images;
     size_t light_count, light_capacity;
     gnoi_named_light *lights;
     gno_camera camera;
@@ -119,6 +124,19 @@ struct gno_scene {
 /* Makes scene->prepared valid: planes, splitting of polygons that are not planar, triangulations of smooth n-gons, normals.
  * Warns once with counts of degenerate and non-planar polygons. */
 gno_status gnoi_scene_prepare(gno_scene *scene, int threads);
+
+/* 1 when the material's texture or bump lies on texture coordinates. */
+static inline int gnoi_is_mapped(const gno_material *m)
+{
+    return (m->texture.kind == GNO_TEXTURE_IMAGE && m->texture.map == GNO_MAP_UV) ||
+           (m->bump.kind != GNO_BUMP_NONE && m->bump.texture.kind == GNO_TEXTURE_IMAGE && m->bump.texture.map == GNO_MAP_UV);
+}
+
+/* 1 when the material's texture has holes. */
+static inline int gnoi_has_holes(const gno_scene *scene, const gno_material *m)
+{
+    return m->texture.kind == GNO_TEXTURE_IMAGE && scene->images[m->texture.image].has_alpha;
+}
 
 /* The connected part that a prepared polygon belongs to. */
 static inline uint32_t gnoi_solid_of(const gnoi_prepared *prep, const gnoi_poly *poly)

@@ -8,6 +8,9 @@
 #include "base/context.h"
 
 gno_status gnoi_check_material(gno_context *context, const gno_material *material);
+/* The material's texture and bump: texture.c. */
+struct gno_scene;
+gno_status gnoi_check_surface(const struct gno_scene *scene, const gno_material *material);
 gno_status gnoi_check_light(gno_context *context, const gno_light *light);
 gno_status gnoi_check_camera(gno_context *context, const gno_camera *camera);
 gno_status gnoi_check_image(gno_context *context, const gno_image_def *image);

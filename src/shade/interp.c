@@ -32,6 +32,8 @@ static void set_weights(gnoi_interp *interp, const gno_scene *scene, const gnoi_
 static void set_normals(gnoi_interp *interp, const gno_scene *scene)
 {
     const gnoi_prepared *prep = &scene->prepared;
+    if (!prep->corner_normal || prep->corner_normal[interp->corner[0]] == GNOI_NONE)
+        return;
     for (int k = 0; k < 3; k++) {
         gnoi_screen_plane sum = {0, 0, 0};
         for (int i = 0; i < 3; i++) {

@@ -1,0 +1,146 @@
+/* image.c -- see image.h. */
+#include "scene/image.h"
+#include <math.h>
+#include <string.h>
+
+/* The sRGB curve (IEC 61966-2-1), from 8 bits to linear. */
+static float decode_srgb(int byte)
+{
+    double v = byte / 255.0;
+    return (float)(v <= 0.04045 ? v / 12.92 : pow((v + 0.055) / 1.055, 2.4));
+}
+
+void gnoi_image_free(gno_context *context, gnoi_image *image)
+{
+    gnoi_free(context, image->bytes, (size_t)image->width * (size_t)image->height, sizeof *image->bytes);
+    gnoi_free(context, image->decode, 256, sizeof *image->decode);
+    for (int l = 0; l < image->level_count; l++) {
+        gnoi_image_level *level = &image->level[l];
+        size_t cells = (size_t)level->width * (size_t)level->height;
+        gnoi_free(context, level->mean, cells, sizeof *level->mean);
+        gnoi_free(context, level->spread, cells, sizeof *level->spread);
+    }
+    memset(image, 0, sizeof *image);
+}
+
+static int allocate(gno_context *context, const gno_pixels *pixels, gnoi_image *image)
+{
+    int width = pixels->width, height = pixels->height, good = 1;
+    image->width = width;
+    image->height = height;
+    if (pixels->bytes) {
+        image->bytes = gnoi_malloc(context, (size_t)width * (size_t)height, sizeof *image->bytes);
+        image->decode = gnoi_malloc(context, 256, sizeof *image->decode);
+        good = image->bytes && image->decode;
+    }
+    for (int l = 0; good; l++, width = (width + 1) / 2, height = (height + 1) / 2) {
+        gnoi_image_level *level = &image->level[l];
+        size_t cells = (size_t)width * (size_t)height;
+        level->width = width;
+        level->height = height;
+        image->level_count = l + 1;
+        if (l > 0 || !pixels->bytes)
+            good = (level->mean = gnoi_malloc(context, cells, sizeof *level->mean)) != NULL;
+        if (l > 0)
+            good = good && (level->spread = gnoi_malloc(context, cells, sizeof *level->spread)) != NULL;
+        if (width == 1 && height == 1)
+            break;
+    }
+    return good;
+}
+
+/* Where red, green, blue and alpha stand among the channels of a pixel; alpha -1: nowhere. */
+static void find_channels(int channels, int place[4])
+{
+    place[0] = 0;
+    place[1] = channels >= 3 ? 1 : 0;
+    place[2] = channels >= 3 ? 2 : 0;
+    place[3] = channels % 2 == 0 ? channels - 1 : -1;
+}
+
+static void copy_bytes(const gno_pixels *pixels, gnoi_image *image)
+{
+    int place[4];
+    find_channels(pixels->channels, place);
+    for (int y = 0; y < image->height; y++) {
+        const unsigned char *in = pixels->bytes + (size_t)(image->height - 1 - y) * (size_t)image->width * (size_t)pixels->channels;
+        unsigned char(*out)[4] = image->bytes + (size_t)y * (size_t)image->width;
+        for (int x = 0; x < image->width; x++, in += pixels->channels) {
+            for (int k = 0; k < 4; k++)
+                out[x][k] = place[k] < 0 ? 255 : in[place[k]];
+            image->has_alpha |= out[x][3] < 255;
+        }
+    }
+    for (int i = 0; i < 256; i++)
+        image->decode[i] = pixels->encoded ? decode_srgb(i) : (float)i / 255.0f;
+}
+
+static void copy_floats(const gno_pixels *pixels, gnoi_image *image)
+{
+    int place[4];
+    find_channels(pixels->channels, place);
+    for (int y = 0; y < image->height; y++) {
+        const float *in = pixels->linear + (size_t)(image->height - 1 - y) * (size_t)image->width * (size_t)pixels->channels;
+        float(*out)[4] = image->level[0].mean + (size_t)y * (size_t)image->width;
+        for (int x = 0; x < image->width; x++, in += pixels->channels) {
+            float alpha = place[3] < 0 ? 1 : in[place[3]];
+            alpha = alpha < 0 ? 0 : alpha > 1 ? 1 : alpha;
+            image->has_alpha |= alpha < 1;
+            for (int k = 0; k < 3; k++)
+                out[x][k] = in[place[k]] * alpha;
+            out[x][3] = alpha;
+        }
+    }
+}
+
+/* Elements of the picture along one side of cell i of a level. */
+static int side(int elements, int level, int i)
+{
+    int from = i << level, to = from + (1 << level);
+    return (to < elements ? to : elements) - from;
+}
+
+/* A cell's mean over its up to four children, weighted by their sizes, and its spread. */
+static void make_cell(const gnoi_image *image, int l, int x, int y)
+{
+    const gnoi_image_level *level = &image->level[l], *below = &image->level[l - 1];
+    size_t at = (size_t)y * (size_t)level->width + (size_t)x;
+    float value[4][4], spread[4], widest = 0;
+    double sum[4] = {0, 0, 0, 0}, total = 0;
+    int count = 0;
+    for (int j = 2 * y; j <= 2 * y + 1 && j < below->height; j++)
+        for (int i = 2 * x; i <= 2 * x + 1 && i < below->width; i++, count++) {
+            double weight = (double)side(image->width, l - 1, i) * side(image->height, l - 1, j);
+            gnoi_image_value(image, l - 1, i, j, value[count]);
+            spread[count] = below->spread ? below->spread[(size_t)j * (size_t)below->width + (size_t)i] : 0;
+            for (int k = 0; k < 4; k++)
+                sum[k] += weight * (double)value[count][k];
+            total += weight;
+        }
+    for (int k = 0; k < 4; k++)
+        level->mean[at][k] = (float)(sum[k] / total);
+    for (int c = 0; c < count; c++)
+        for (int k = 0; k < 4; k++) {
+            float far_off = fabsf(value[c][k] - level->mean[at][k]) + spread[c];
+            widest = far_off > widest ? far_off : widest;
+        }
+    level->spread[at] = widest;
+}
+
+gno_status gnoi_image_make(gno_context *context, const gno_pixels *pixels, gnoi_image *image)
+{
+    memset(image, 0, sizeof *image);
+    if (!allocate(context, pixels, image)) {
+        gnoi_image_free(context, image);
+        return GNO_ERROR_MEMORY;
+    }
+    if (pixels->bytes)
+        copy_bytes(pixels, image);
+    else
+        copy_floats(pixels, image);
+    for (int l = 1; l < image->level_count; l++)
+        for (int y = 0; y < image->level[l].height; y++)
+            for (int x = 0; x < image->level[l].width; x++)
+                make_cell(image, l, x, y);
+    return GNO_OK;
+}

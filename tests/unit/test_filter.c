@@ -1,0 +1,199 @@
+/* test_filter.c -- the texture filter against a brute-force integral: 64 x 64 samples a pixel, each a plain look at the element
+ * under it.
+ *
+ * Pixels come from random planes under a perspective view: enlarged, reduced, and so slanted that w changes manifold within a pixel.
+ * Where a pixel holds so many elements that 4096 samples would not resolve them, more are taken.
+ */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include "project/filter.h"
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define ONE_STEP (1.0 / 255)
+
+static uint32_t random_state;
+
+static double random_unit(void)
+{
+    random_state = random_state * 1664525u + 1013904223u;
+    return (random_state >> 8) / 16777216.0;
+}
+
+static double random_between(double a, double b) { return a + (b - a) * random_unit(); }
+
+/* ---- pictures ------------------------------------------------------------------------------------------------------------ */
+
+typedef enum picture_kind { CHECKER, CHECKER_OF_3, STRIPES, PHOTOGRAPH, LEAVES } picture_kind;
+
+/* A checkerboard, stripes, or something with detail of every size as photographs have it; with alpha: leaves. */
+static float picture_at(picture_kind kind, int x, int y, int k)
+{
+    double v = 0;
+    switch (kind) {
+    case CHECKER: return (float)((x + y) & 1);
+    case CHECKER_OF_3: return (float)((x / 3 + y / 3) & 1);
+    case STRIPES: return (float)(x & 1);
+    case LEAVES:
+        if (k == 3) return (float)(((x * 7) ^ (y * 5)) % 11 < 6);
+        return (float)(0.2 + 0.1 * k);
+    default:
+        for (int octave = 0; octave < 6; octave++)
+            v += sin(x * 0.13 * (1 << octave) + k + 1.7 * sin(y * 0.11 * (1 << octave) + octave)) / (1 << octave);
+        return (float)(0.5 + 0.25 * v);
+    }
+}
+
+static gnoi_image make_picture(gno_context *context, picture_kind kind, int width, int height, float **values)
+{
+    gnoi_image image;
+    gno_pixels pixels;
+    float *v = malloc((size_t)width * (size_t)height * 4 * sizeof *v);
+    assert_non_null(v);
+    for (int y = 0; y < height; y++)
+        for (int x = 0; x < width; x++)
+            for (int k = 0; k < 4; k++)
+                v[4 * (y * width + x) + k] = k == 3 && kind != LEAVES ? 1 : picture_at(kind, x, y, k);
+    memset(&pixels, 0, sizeof pixels);
+    pixels.width = width;
+    pixels.height = height;
+    pixels.channels = 4;
+    pixels.linear = v;
+    assert_int_equal(gnoi_image_make(context, &pixels, &image), GNO_OK);
+    *values = v;
+    return image;
+}
+
+/* ---- the slow twin ------------------------------------------------------------------------------------------------------- */
+
+static int wrapped(int i, int n, gno_wrap wrap)
+{
+    int m = ((i % n) + n) % n;
+    if (wrap == GNO_WRAP_REPEAT) return m;
+    if (wrap == GNO_WRAP_MIRROR) return ((i - m) / n) % 2 ? n - 1 - m : m;
+    if (wrap == GNO_WRAP_CLAMP) return i < 0 ? 0 : i >= n ? n - 1 : i;
+    return i < 0 || i >= n ? -1 : i;
+}
+
+static void brute_force(const float *values, int width, int height, gno_wrap wrap, const gnoi_pattern *p, double x, double y, int side,
+                        double mean[4])
+{
+    double count = 0;
+    mean[0] = mean[1] = mean[2] = mean[3] = 0;
+    for (int j = 0; j < side; j++)
+        for (int i = 0; i < side; i++) {
+            double px = x - 0.5 + (i + 0.5) / side, py = y - 0.5 + (j + 0.5) / side, w = gnoi_plane_at(&p->w, px, py);
+            int column, row;
+            if (!(w > 0)) continue;
+            column = wrapped((int)floor(gnoi_plane_at(&p->s, px, py) / w * width), width, wrap);
+            row = wrapped((int)floor(gnoi_plane_at(&p->t, px, py) / w * height), height, wrap);
+            count++;
+            for (int k = 0; k < 4; k++) {
+                const float *v = values + 4 * ((height - 1 - row) * width + column);
+                mean[k] += column < 0 || row < 0 ? 1 : k < 3 ? v[k] * v[3] : v[3];
+            }
+        }
+    for (int k = 0; k < 4; k++) mean[k] /= count;
+}
+
+/* ---- random pixels ------------------------------------------------------------------------------------------------------- */
+
+/* A pixel about (0,0) that sees, at its middle, `size` elements along the shorter axis and `slant` times as many along the longer;
+ * w changes by the share `bend` from its middle to its border. */
+static gnoi_pattern random_pattern(int width, int height, double size, double slant, double bend)
+{
+    double turn = random_between(0, 6.3), spin = random_between(0, 6.3), a = cos(turn), b = sin(turn), c = cos(spin), d = sin(spin);
+    double s0 = random_between(-2, 3), t0 = random_between(-2, 3), long_side = size * slant;
+    double sx = (a * long_side * c - b * size * d) / width, sy = (a * long_side * d + b * size * c) / width;
+    double tx = (b * long_side * c + a * size * d) / height, ty = (b * long_side * d - a * size * c) / height;
+    double wx = -2 * bend * c, wy = -2 * bend * d; /* w falls along the long axis */
+    gnoi_pattern p;
+    p.w.fx = wx, p.w.fy = wy, p.w.f0 = 1;
+    p.s.fx = sx + s0 * wx, p.s.fy = sy + s0 * wy, p.s.f0 = s0;
+    p.t.fx = tx + t0 * wx, p.t.fy = ty + t0 * wy, p.t.f0 = t0;
+    return p;
+}
+
+static double worst(picture_kind kind, int width, int height, gno_wrap wrap, double size, double slant, double bend, int rounds, int side)
+{
+    gno_context *context = NULL;
+    gno_texture how = gno_texture_default(GNO_MAP_UV);
+    double largest = 0;
+    float *values;
+    gnoi_image image;
+    assert_int_equal(gno_context_create(NULL, &context), GNO_OK);
+    image = make_picture(context, kind, width, height, &values);
+    how.wrap = wrap;
+    for (int i = 0; i < rounds; i++) {
+        gnoi_pattern p = random_pattern(width, height, size * random_between(0.5, 2), slant * random_between(0.7, 1.4), bend * random_unit());
+        double slow[4];
+        float fast[4];
+        gnoi_filter_pixel(&image, &how, &p, 0, 0, 0, 0, fast);
+        brute_force(values, width, height, wrap, &p, 0, 0, side, slow);
+        for (int k = 0; k < 4; k++)
+            largest = fmax(largest, fabs((double)fast[k] - slow[k]));
+    }
+    gnoi_image_free(context, &image);
+    free(values);
+    gno_context_destroy(context);
+    return largest;
+}
+
+/* ---- tests ----------------------------------------------------------------------------------------------------------------- */
+
+typedef struct extent {
+    double size, slant, bend;
+    int rounds, side;
+} extent;
+
+static void check_all(const extent *extents, size_t count, gno_wrap wrap)
+{
+    static const char *const names[] = {"checker", "checker of 3", "stripes", "photograph", "leaves"};
+    random_state = 7;
+    for (int kind = CHECKER; kind <= LEAVES; kind++)
+        for (size_t i = 0; i < count; i++) {
+            const extent *e = &extents[i];
+            double off = worst((picture_kind)kind, 64, 42, wrap, e->size, e->slant, e->bend, e->rounds, e->side);
+            if (off > ONE_STEP)
+                fail_msg("%s, %g elements, slant %g: off by %g/255", names[kind], e->size, e->slant, 255 * off);
+        }
+}
+
+static void test_enlarged(void **state)
+{
+    static const extent extents[] = {{0.05, 1, 0, 60, 64}, {0.2, 1, 0.2, 60, 64}, {0.8, 1, 0.2, 60, 128}};
+    (void)state;
+    for (int wrap = GNO_WRAP_REPEAT; wrap <= GNO_WRAP_NONE; wrap++)
+        check_all(extents, 3, (gno_wrap)wrap);
+}
+
+static void test_reduced(void **state)
+{
+    static const extent extents[] = {{3, 1, 0.1, 12, 256}, {12, 1, 0.1, 4, 512}, {50, 1, 0.1, 2, 512}};
+    (void)state;
+    for (int wrap = GNO_WRAP_REPEAT; wrap <= GNO_WRAP_NONE; wrap++)
+        check_all(extents, 3, (gno_wrap)wrap);
+}
+
+static void test_slanted(void **state)
+{
+    static const extent extents[] = {{0.05, 10, 0.4, 20, 128}, {0.2, 20, 0.45, 10, 512}, {1, 20, 0.45, 4, 512}, {4, 20, 0.45, 4, 512}};
+    (void)state;
+    for (int wrap = GNO_WRAP_REPEAT; wrap <= GNO_WRAP_NONE; wrap++)
+        check_all(extents, 4, (gno_wrap)wrap);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(test_enlarged),
+        cmocka_unit_test(test_reduced),
+        cmocka_unit_test(test_slanted),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL) != 0;
+}
