@@ -14,6 +14,7 @@
 #ifndef GNOMON_GNOMON_H
 #define GNOMON_GNOMON_H
 
+#include <gnomon/gnomon_math.h>
 #include <stddef.h>
 
 #ifdef __cplusplus
