@@ -11,7 +11,7 @@ int gnoi_tile_init(gnoi_tile *tile, const gnoi_frame_job *job)
     size_t lamps = (size_t)job->lamp_count;
     memset(tile, 0, sizeof *tile);
     tile->job = job;
-    tile->lines.context = tile->store.context = tile->outline.context = context;
+    tile->lines.context = tile->stacks.context = tile->store.context = tile->outline.context = context;
     tile->lit = gnoi_calloc(context, lamps, sizeof *tile->lit);
     tile->lit_colour = gnoi_calloc(context, lamps, sizeof *tile->lit_colour);
     tile->batch.weight = gnoi_calloc(context, lamps * GNOI_BATCH, sizeof *tile->batch.weight);
@@ -29,6 +29,7 @@ void gnoi_tile_free(gnoi_tile *tile)
         return;
     lamps = (size_t)tile->job->lamp_count;
     gnoi_lines_free(&tile->lines);
+    gnoi_stacks_free(&tile->stacks);
     gnoi_columns_free(&tile->store);
     gnoi_outline_free(&tile->outline);
     gnoi_free(context, tile->order, tile->order_capacity, sizeof *tile->order);
@@ -45,6 +46,7 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_free(context, tile->mappings, tile->mapping_capacity, sizeof *tile->mappings);
     gnoi_free(context, tile->lit, lamps, sizeof *tile->lit);
     gnoi_free(context, tile->lit_colour, lamps, sizeof *tile->lit_colour);
+    gnoi_free(context, tile->lit_veil, lamps, sizeof *tile->lit_veil);
     gnoi_free(context, tile->batch.weight, lamps * GNOI_BATCH, sizeof *tile->batch.weight);
 }
 
@@ -63,6 +65,7 @@ static void start_tile(gnoi_tile *tile, size_t index)
     for (int i = 0; i < job->def.base_lines && i < GNOI_BASE_LINES; i++)
         memset(tile->line_acc[i], 0, sizeof tile->line_acc[i]);
     memset(tile->thin, 0, sizeof tile->thin);
+    tile->was_veiled = 0;
     if (job->layers)
         gnoi_tile_layers_start(tile);
 }

@@ -2,6 +2,7 @@
  *
  * Place in the data flow, each step a file of its own:
  *   bins -> tile_scan.c: polygons of the tile, nearest first, as segments into the visible lists of the tile's lines
+ *        -> tile_stack.c: surfaces that let light through, over and between them (scan/stack.h)
  *        -> tile_light.c: a column of each lamp's shadow matrix for every surface seen
  *        -> tile_rows.c: visible pieces of a pixel row -> coverage by surface and pixel, split by shadow polygons
  *        -> tile_shade.c: one sample for each pixel and surface -> lighting -> the tile's picture
@@ -15,7 +16,7 @@
 
 #include "base/sort.h"
 #include "scan/bins.h"
-#include "scan/lines.h"
+#include "scan/stack.h"
 #include "shade/batch.h"
 #include "shade/interp.h"
 #include "shade/texture.h"
@@ -53,8 +54,9 @@ typedef struct gnoi_frame_job {
 typedef struct gnoi_item {
     float x0, x1, y0, y1, z1;
     uint32_t slot;
-    int plain; /* a triangle that needs no cutting */
-    int thin;  /* nearly level and flatter than the base lines are apart: they may miss it over many pixels */
+    int plain;             /* a triangle that needs no cutting */
+    unsigned char thin;    /* nearly level and flatter than the base lines are apart: they may miss it over many pixels */
+    unsigned char see_through; /* not opaque: drawn after all that is */
 } gnoi_item;
 
 /* A surface seen in the tile. */
@@ -93,6 +95,18 @@ typedef struct gnoi_fragments {
     int alone;                        /* lines are being made for the layers alone: no colour is wanted */
 } gnoi_fragments;
 
+/* Colours by base line of a pixel row. */
+typedef struct gnoi_tinted_lines {
+    float rgb[GNOI_BASE_LINES][3][GNOI_TILE_W];
+} gnoi_tinted_lines;
+
+/* What reaches the eye of one surface along a pixel row, through the surfaces before it: sums over pieces of length times tint. */
+typedef struct gnoi_veil {
+    float sum[3][GNOI_TILE_W];
+    float hides[GNOI_TILE_W]; /* length times the share of light that it keeps from behind */
+    gnoi_tinted_lines by_line;
+} gnoi_veil;
+
 typedef struct gnoi_tile {
     const gnoi_frame_job *job;
     int x0, y0, width, height; /* pixels */
@@ -103,6 +117,14 @@ typedef struct gnoi_tile {
     size_t order_capacity, order_scratch_capacity;
     gnoi_item *items;                      /* beside the tile's bin */
     size_t item_capacity;
+    size_t opaque_count;                   /* items at the head of the order that are opaque */
+    gnoi_stacks stacks;
+    int veiled;                            /* some piece on the lines has a tint */
+    int was_veiled;                        /* on some lines of the tile */
+    gnoi_veil veil;                        /* of the surface at hand */
+    gnoi_veil bare;                        /* how much less than all reaches the eye where no opaque surface is seen */
+    gnoi_tinted_lines *lit_veil;           /* beside lit_colour, one for each lamp, NULL until a tile is veiled */
+    int lit_lamp;                          /* of the sample at hand */
     size_t slot_count, slot_capacity;
     gnoi_slot *slots;                      /* beside lines.depths, same numbering */
     gnoi_outline outline;
@@ -134,6 +156,7 @@ typedef struct gnoi_tile {
     float line_acc[GNOI_BASE_LINES][3][GNOI_TILE_PIXELS]; /* the pixel's colour on each base line */
     unsigned char thin[GNOI_TILE_PIXELS];  /* something thin passes: to be refined whatever the base lines saw */
     float cover_by_line[GNOI_BASE_LINES][GNOI_BATCH]; /* beside the batch */
+    float share_by_line[GNOI_BASE_LINES][3][GNOI_BATCH]; /* in its place where the tile is veiled: of the sample's colour */
     double spans, shaded, refined;
     gnoi_fragments fragments;
 } gnoi_tile;
@@ -154,15 +177,40 @@ void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
 void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count);
 void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, double y1);
 
+/* tile_stack.c: what a surface that is not opaque does to what lies behind it. */
+gnoi_pass gnoi_tile_pass(void *tile, uint32_t slot, int32_t x0, int32_t x1, double y);
+
+/* tile_stack.c, for tile_rows.c where the tile is veiled: what reaches the eye of a slot's pieces in the row, between two
+ * pixels, into tile->veil; what is seen of the background; memory for the lamps' parts (0 when it fails). */
+void gnoi_tile_veil(gnoi_tile *tile, int row, const gnoi_slot *slot, int first, int last);
+void gnoi_tile_veiled_background(gnoi_tile *tile, int row);
+void gnoi_tile_uncover(gnoi_tile *tile, int first, int last); /* takes back the coverage by the slot at hand: it hides nothing */
+int gnoi_tile_veil_ready(gnoi_tile *tile);
+void gnoi_tile_add_tinted_light(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float x0, float x1, const double light[3], int line);
+void gnoi_tinted_lines_clear(gnoi_tinted_lines *lines, int first, int last);
+
+/* tile_stack.c, for tile_shade.c where the tile is veiled: sample i of the batch, or a sample with the colour rgb, as the surfaces
+ * before it leave it (lit: a part that tile->lit_lamp alone reaches); a colour into the picture, by lines. */
+void gnoi_tile_tint_sample(gnoi_tile *tile, int i, int column, const gnoi_cells *cells, int lit);
+void gnoi_tile_add_tinted(gnoi_tile *tile, int row, int column, const gnoi_cells *cells, int lit, float rgb[3]);
+void gnoi_tile_add_shares(gnoi_tile *tile, uint32_t pixel, const float rgb[3], const float *share, size_t stride);
+
 /* tile_light.c: finds the columns of the surfaces seen on the tile's lines. */
 void gnoi_tile_light(gnoi_tile *tile);
 
 /* tile_rows.c: makes samples of every visible piece of row `row` (apron included). */
 void gnoi_tile_row(gnoi_tile *tile, int row);
 
+/* tile_rows.c: adds light times length to the pixels of [x0,x1), in pixels from the tile's left side. */
+void gnoi_tile_add_light(float colour[3][GNOI_TILE_W], float x0, float x1, const double light[3]);
+
+/* tile_rows.c: which of its row's base lines a line is; the one line of the apron above is the last, of the apron below the first. */
+int gnoi_tile_base_line(const gnoi_tile *tile, int row, uint32_t line);
+
 /* tile_shade.c: one sample of a slot: the part of pixel `column` of `row` that `cells` hold, at its middle. The caller has
  * set batch.weight[lamp][batch.count] to the coverage (in lines) that each lamp reaches. tint NULL: the surface with its ambient
- * term; else the part that one lamp alone reaches, with this factor on the light. Flushed when the batch is full. */
+ * term, seen through tile->veil if the tile is veiled; else the part that one lamp alone reaches (tile->lit_lamp), with this factor
+ * on the light. Flushed when the batch is full. */
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint);
 void gnoi_tile_flush(gnoi_tile *tile);
 

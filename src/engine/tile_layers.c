@@ -5,7 +5,8 @@
  * the layers tell apart, get them for the layers alone. When the tile is done its fragments are sorted by pixel and surface, and
  * each pixel is written from its own. Without layers nothing here runs, and with them the picture stays the same, bit for bit.
  * Invariants: lengths are multiples of 2^-16 and at most GNO_MAX_LINES, so that their sums are exact; all fragments of a pixel and
- * its background add up to the lines that cross it. Nothing depends on the order in which tiles are made.
+ * its background add up to the lines that cross it. What is seen through other surfaces counts by the share of light that it
+ * hides, and sums are then rounded. Nothing depends on the order in which tiles are made.
  * Source: ranked pairs of number and coverage after Friedman and Jones, "Fully automatic ID mattes with support for motion blur and
  * transparency", 2015.
  */
@@ -71,6 +72,10 @@ static float lit_length(const gnoi_tile *tile, const gnoi_column *column, int la
     for (int k = 0; k < 3; k++)
         sum += tile->lit_colour[lamp][k][pixel];
     sum /= 3;
+    if (tile->veiled) { /* of what reaches the eye */
+        float all = (tile->veil.sum[0][pixel] + tile->veil.sum[1][pixel] + tile->veil.sum[2][pixel]) / 3;
+        sum = all > 0 ? sum / all * cover : 0;
+    }
     return sum > cover * WHOLE ? cover : sum;
 }
 
@@ -112,7 +117,13 @@ void gnoi_tile_layers_keep(gnoi_tile *tile, uint32_t slot, const gnoi_column *co
     gnoi_fragments *f = &tile->fragments;
     gnoi_fragment *fragment;
     uint32_t at = (uint32_t)(row * GNOI_TILE_W + pixel);
-    float length = tile->cells.length[pixel];
+    float length = tile->cells.length[pixel], share = 1;
+    if (tile->veiled) {
+        share = tile->veil.hides[pixel] / length;
+        length = tile->veil.hides[pixel];
+        if (!(length > 0))
+            return;
+    }
     if (tile->judging)
         keep_identity(tile, at, identity_of(tile, slot, columns, pixel, length), length);
     if (row < 1 || row > tile->height)
@@ -126,8 +137,8 @@ void gnoi_tile_layers_keep(gnoi_tile *tile, uint32_t slot, const gnoi_column *co
     fragment->pixel = at;
     fragment->slot = slot;
     fragment->length = length;
-    fragment->mx = tile->cells.mx[pixel];
-    fragment->my = tile->cells.my[pixel];
+    fragment->mx = tile->cells.mx[pixel] * share;
+    fragment->my = tile->cells.my[pixel] * share;
     for (int j = 0; j < tile->job->lamp_count && f->light; j++)
         f->light[tile->job->lamp_light[j]][at] += lit_length(tile, &columns[j], j, pixel, length);
 }
@@ -183,6 +194,12 @@ static void rank(unsigned *ids, float *lengths, int count, unsigned id, float le
     lengths[i] = length;
 }
 
+/* What surfaces cover, of so many lines: shares of surfaces seen through others are rounded and may miss the whole. */
+static float whole_or(const gnoi_tile *tile, float covered, float lines)
+{
+    return tile->was_veiled && covered > lines * WHOLE ? lines : covered;
+}
+
 typedef uint32_t (*number_fn)(const gnoi_tile *tile, uint32_t slot);
 
 /* Writes the pairs of one pixel from the joined run order[first..first+n), which is put in the order of numbers on the way. */
@@ -207,7 +224,7 @@ static void write_ranks(gnoi_tile *tile, const gno_ranks *ranks, number_fn numbe
         covered += length;
         rank(ids, shares, ranks->count, id, length);
     }
-    rank(ids, shares, ranks->count, GNO_BACKGROUND, lines - covered);
+    rank(ids, shares, ranks->count, GNO_BACKGROUND, lines - whole_or(tile, covered, lines));
     for (int i = 0; i < ranks->count; i++)
         shares[i] /= lines;
 }
@@ -336,6 +353,7 @@ static void write_sums(gnoi_tile *tile, size_t first, size_t n, uint32_t pixel, 
     float covered = 0;
     for (size_t i = first; i < first + n; i++)
         covered += tile->fragments.list[tile->fragments.order[i].value].length;
+    covered = whole_or(tile, covered, tile->weight[pixel]);
     if (layers->coverage)
         layers->coverage[at] = covered / tile->weight[pixel];
     for (size_t j = 0; j < job->scene->light_count && layers->shadow; j++) {

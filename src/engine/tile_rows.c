@@ -52,7 +52,7 @@ static void cells_add(gnoi_cells *cells, float x0, float x1, float dy, int line)
 }
 
 /* The light that came through on [x0,x1), by pixel. */
-static void add_colour(float colour[3][GNOI_TILE_W], float x0, float x1, const double light[3])
+static inline void add_light(float colour[3][GNOI_TILE_W], float x0, float x1, const double light[3])
 {
     int p1 = (int)x1;
     for (int p = (int)x0; p <= p1 && p < GNOI_TILE_W; p++) {
@@ -62,8 +62,9 @@ static void add_colour(float colour[3][GNOI_TILE_W], float x0, float x1, const d
     }
 }
 
-/* Which of its row's base lines a line is; the one line of the apron above is the last, of the apron below the first. */
-static int base_line(const gnoi_tile *tile, int row, uint32_t line)
+void gnoi_tile_add_light(float colour[3][GNOI_TILE_W], float x0, float x1, const double light[3]) { add_light(colour, x0, x1, light); }
+
+int gnoi_tile_base_line(const gnoi_tile *tile, int row, uint32_t line)
 {
     return row == 0 ? tile->job->def.base_lines - 1 : (int)(line - tile->row_line[row]);
 }
@@ -85,7 +86,10 @@ static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, floa
         if (b - a < LEAK_LENGTH || (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0)))
             continue;
         cells_add(&tile->lit[lamp], a, b, dy, line);
-        add_colour(tile->lit_colour[lamp], a, b, part->light);
+        if (tile->veiled)
+            gnoi_tile_add_tinted_light(tile, lamp, piece, a, b, part->light, line);
+        else
+            add_light(tile->lit_colour[lamp], a, b, part->light);
     }
 }
 
@@ -112,7 +116,7 @@ static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, const 
             return;
         }
         known = y;
-        split_piece(tile, lamp, &pieces[p], line_offset(tile, row, line), tile->judging ? base_line(tile, row, line) : -1);
+        split_piece(tile, lamp, &pieces[p], line_offset(tile, row, line), tile->judging ? gnoi_tile_base_line(tile, row, line) : -1);
     }
 }
 
@@ -121,45 +125,56 @@ static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
     cells_clear(&tile->lit[lamp], first, last);
     for (int k = 0; k < 3; k++)
         memset(tile->lit_colour[lamp][k] + first, 0, (size_t)(last - first + 1) * sizeof(float));
+    if (tile->veiled && tile->judging)
+        gnoi_tinted_lines_clear(&tile->lit_veil[lamp], first, last);
+}
+
+/* 1 when a lamp that has to be split reaches all of the surface in a pixel unhindered; all: what the eye would get of light 1. */
+static int reaches_all(const gnoi_tile *tile, int lamp, int pixel, float cover, const float all[3])
+{
+    int whole = tile->lit[lamp].length[pixel] > cover * 0.999999f;
+    for (int k = 0; k < 3; k++)
+        whole &= tile->lit_colour[lamp][k][pixel] > all[k] * 0.999999f;
+    return whole;
+}
+
+/* The sample of the part of a surface that a lamp alone reaches in a pixel. */
+static void sample_lit(gnoi_tile *tile, gnoi_slot *slot, int row, int pixel, int lamp)
+{
+    const gnoi_cells *lit = &tile->lit[lamp];
+    float length = lit->length[pixel], tint[3], *weight = tile->batch.weight + tile->batch.count;
+    for (int k = 0; k < 3; k++)
+        tint[k] = tile->lit_colour[lamp][k][pixel] / length;
+    for (int k = 0; k < tile->job->lamp_count; k++)
+        weight[(size_t)k * GNOI_BATCH] = 0;
+    weight[(size_t)lamp * GNOI_BATCH] = length;
+    tile->lit_lamp = lamp;
+    gnoi_tile_sample(tile, slot, row, pixel, lit, tint);
 }
 
 /* The samples of one pixel of a surface. */
 static void sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel)
 {
-    const gnoi_cells *cells = &tile->cells;
     int lamps = tile->job->lamp_count;
-    float cover = cells->length[pixel], *weight = tile->batch.weight;
-    size_t at = (size_t)tile->batch.count;
+    float cover = tile->cells.length[pixel], *weight = tile->batch.weight + tile->batch.count, all[3] = {cover, cover, cover};
     unsigned parts = 0;
+    for (int k = 0; k < 3 && tile->veiled; k++)
+        all[k] = tile->veil.sum[k][pixel];
     for (int j = 0; j < lamps; j++) {
         float w = columns[j].state == GNOI_COLUMN_LIT ? cover : 0;
         if (columns[j].state == GNOI_COLUMN_SPLIT) {
-            const float *length = tile->lit[j].length;
-            int whole = length[pixel] > cover * 0.999999f;
-            for (int k = 0; k < 3; k++)
-                whole &= tile->lit_colour[j][k][pixel] > cover * 0.999999f;
+            int whole = reaches_all(tile, j, pixel, cover, all);
             w = whole ? cover : 0;
-            parts += !whole && length[pixel] > 0;
+            parts += !whole && tile->lit[j].length[pixel] > 0;
         }
-        weight[(size_t)j * GNOI_BATCH + at] = w;
+        weight[(size_t)j * GNOI_BATCH] = w;
     }
-    gnoi_tile_sample(tile, slot, row, pixel, cells, NULL);
-    for (int j = 0; j < lamps && parts; j++) {
-        const gnoi_cells *lit = &tile->lit[j];
-        float length = lit->length[pixel], tint[3];
-        at = (size_t)tile->batch.count;
-        if (columns[j].state != GNOI_COLUMN_SPLIT || !(length > 0))
-            continue;
-        for (int k = 0; k < 3; k++)
-            tint[k] = tile->lit_colour[j][k][pixel] / length;
-        if (length > cover * 0.999999f && tint[0] > 0.999999f && tint[1] > 0.999999f && tint[2] > 0.999999f)
-            continue;
-        for (int k = 0; k < lamps; k++)
-            weight[(size_t)k * GNOI_BATCH + at] = 0;
-        weight[(size_t)j * GNOI_BATCH + at] = length;
-        gnoi_tile_sample(tile, slot, row, pixel, lit, tint);
-        parts--;
-    }
+    gnoi_tile_sample(tile, slot, row, pixel, &tile->cells, NULL);
+    for (int j = 0; j < lamps && parts; j++)
+        if (columns[j].state == GNOI_COLUMN_SPLIT && tile->lit[j].length[pixel] > 0 && !reaches_all(tile, j, pixel, cover, all)) {
+            sample_lit(tile, slot, row, pixel, j);
+            parts--;
+        }
 }
 
 static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
@@ -178,11 +193,13 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
             clear_lamp(tile, j, first, last);
     for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
-        int line = tile->judging ? base_line(tile, row, pieces[p].line) : -1;
+        int line = tile->judging ? gnoi_tile_base_line(tile, row, pieces[p].line) : -1;
         cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE,
                   line_offset(tile, row, pieces[p].line), line);
         tile->spans++;
     }
+    if (tile->veiled)
+        gnoi_tile_veil(tile, row, slot, first, last);
     for (int j = 0; j < lamps && !tile->failed; j++)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
             split_pieces(tile, row, slot, &columns[j], j);
@@ -196,6 +213,8 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
             if (!tile->fragments.alone)
                 sample_pixel(tile, slot, columns, row, pixel);
         }
+    if (!slot->receiver.poly->opaque)
+        gnoi_tile_uncover(tile, first, last);
 }
 
 /* Chains the row's pieces by slot; returns how many slots are seen. */
@@ -219,13 +238,17 @@ static void add_background(gnoi_tile *tile, int row)
 {
     const double *background = tile->job->scene->image.background;
     float due[GNOI_TILE_W] = {0};
+    if (tile->veiled) {
+        gnoi_tile_veiled_background(tile, row);
+        return;
+    }
     for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++) {
         const gnoi_line *l = &tile->lines.lines[line];
         for (int p = l->xa / GNOI_X_ONE; p < l->xb / GNOI_X_ONE; p++) {
             due[p] += 1;
             if (!tile->judging)
                 continue;
-            int i = base_line(tile, row, line);
+            int i = gnoi_tile_base_line(tile, row, line);
             for (int k = 0; k < 3; k++)
                 tile->line_acc[i][k][row * GNOI_TILE_W + p] += (1 - tile->row_by_line[i][p]) * (float)background[k];
         }
@@ -244,7 +267,8 @@ void gnoi_tile_row(gnoi_tile *tile, int row)
     size_t count;
     if (tile->row_line[row] == tile->row_line[row + 1])
         return;
-    if (!gnoi_reserve(tile->lines.context, (void **)&tile->touched, &tile->touched_capacity, tile->slot_count, sizeof *tile->touched)) {
+    if (!gnoi_reserve(tile->lines.context, (void **)&tile->touched, &tile->touched_capacity, tile->slot_count, sizeof *tile->touched) ||
+        (tile->veiled && !gnoi_tile_veil_ready(tile))) {
         tile->failed = 1;
         return;
     }

@@ -19,6 +19,9 @@ static uint32_t descending_key(float z)
     return u.i & 0x80000000u ? u.i : ~u.i & 0x7fffffffu;
 }
 
+/* Added to the key of what is not opaque, so that it comes after all that is. */
+#define SEE_THROUGH (1u << 22)
+
 /* A polygon counts as thin from this width on, in pixels, and while it rises by less than this share of it. */
 #define THIN_WIDTH 6.0
 #define THIN_SLOPE 0.5
@@ -78,6 +81,7 @@ static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
     item.z1 = -HUGE_VALF;
     item.slot = GNOI_NONE;
     item.thin = 0;
+    item.see_through = !poly->opaque;
     for (uint32_t i = 0; i < poly->corner_count; i++) {
         const gnoi_vertex *v = &tile->job->bins.vertices[vertex[i]];
         x0 = v->x < x0 ? v->x : x0;
@@ -93,7 +97,7 @@ static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
         return item;
     }
     item.plain = poly->corner_count == 3;
-    item.thin = tile->job->def.lines > tile->job->def.base_lines && is_thin(tile, poly, x1 - x0, y1 - y0);
+    item.thin = (unsigned char)(tile->job->def.lines > tile->job->def.base_lines && is_thin(tile, poly, x1 - x0, y1 - y0));
     item.x0 = (float)(x0 - tile->x0) - BOUND_SLACK;
     item.x1 = (float)(x1 - tile->x0) + BOUND_SLACK;
     item.y0 = (float)(y0 - tile->y0) - BOUND_SLACK;
@@ -112,10 +116,15 @@ void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count)
         tile->failed = 1;
         return;
     }
+    tile->opaque_count = count;
     for (size_t i = 0; i < count; i++) {
         tile->items[i] = item_of(tile, &tile->job->scene->prepared.polys[items[i]]);
         tile->order[i].key = descending_key(tile->items[i].z1) >> 10;
         tile->order[i].value = (uint32_t)i;
+        if (tile->items[i].see_through) {
+            tile->order[i].key |= SEE_THROUGH;
+            tile->opaque_count--;
+        }
     }
     gnoi_sort(tile->order, tile->order_scratch, count);
 }
@@ -262,13 +271,15 @@ static int32_t line_position(const gnoi_tile *tile, double x)
     return (int32_t)(t + (GNOI_X_ONE + 0.5)) - GNOI_X_ONE;
 }
 
-static void draw_line(gnoi_tile *tile, uint32_t line, uint32_t slot)
+static inline void draw_line(gnoi_tile *tile, uint32_t line, uint32_t slot, int see_through)
 {
     double y = tile->lines.lines[line].y, *x = tile->crossings;
     unsigned n = gnoi_edges_cross(tile->edges, (unsigned)tile->edge_count, y, x);
     for (unsigned i = 0; i + 1 < n; i += 2) {
         int32_t x0 = line_position(tile, x[i]), x1 = line_position(tile, x[i + 1]);
-        if (x0 < x1)
+        if (x0 < x1 && see_through)
+            gnoi_stacks_insert(&tile->stacks, &tile->lines, line, slot, x0, x1);
+        else if (x0 < x1)
             gnoi_lines_insert(&tile->lines, line, slot, x0, x1);
     }
 }
@@ -336,16 +347,41 @@ static void draw_item(gnoi_tile *tile, gnoi_item *item, uint32_t index)
     if (item->slot == GNOI_NONE)
         return;
     bound = tile->lines.depths[item->slot].surely_before;
+    for (; line < end && !item->see_through; line++)
+        if (is_open(tile, &tile->lines.lines[line], item, bound))
+            draw_line(tile, line, item->slot, 0);
     for (; line < end; line++)
         if (is_open(tile, &tile->lines.lines[line], item, bound))
-            draw_line(tile, line, item->slot);
+            draw_line(tile, line, item->slot, 1);
+}
+
+/* Puts what is not opaque over and between the complete lines. */
+static void finish_stacks(gnoi_tile *tile)
+{
+    tile->veiled = tile->stacks.segment_count > 1;
+    tile->was_veiled |= tile->veiled;
+    if (tile->veiled && !tile->failed)
+        gnoi_stacks_resolve(&tile->stacks, &tile->lines, gnoi_tile_pass, tile);
+    tile->failed |= tile->stacks.failed;
 }
 
 void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count)
 {
-    for (size_t i = 0; i < count && !tile->failed; i++) {
-        uint32_t item = tile->order[i].value;
-        draw_item(tile, &tile->items[item], items[item]);
+    size_t i = 0, end = tile->opaque_count;
+    tile->veiled = 0;
+    for (;;) {
+        for (; i < end && !tile->failed; i++) {
+            uint32_t item = tile->order[i].value;
+            draw_item(tile, &tile->items[item], items[item]);
+        }
+        tile->failed |= tile->lines.failed;
+        if (end == count)
+            break;
+        end = count;
+        gnoi_stacks_reset(&tile->stacks, &tile->lines);
+        tile->failed |= tile->stacks.failed;
     }
+    if (count > tile->opaque_count)
+        finish_stacks(tile);
     tile->failed |= tile->lines.failed;
 }

@@ -45,6 +45,25 @@ static uint32_t new_piece(gnoi_lines *lines)
     return (uint32_t)lines->piece_count++;
 }
 
+static inline void set_piece(gnoi_piece *piece, uint32_t line, uint32_t slot, int32_t x0, int32_t x1)
+{
+    piece->x0 = x0;
+    piece->x1 = x1;
+    piece->slot = slot;
+    piece->line = line;
+    piece->chain = 0;
+}
+
+uint32_t gnoi_lines_new_piece(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x0, int32_t x1)
+{
+    uint32_t p = new_piece(lines);
+    if (p == 0)
+        return 0;
+    set_piece(&lines->pieces[p], line, slot, x0, x1);
+    lines->pieces[p].next = 0;
+    return p;
+}
+
 /* Links a new piece behind `before` (0: at the line's head). Returns it, or 0 when memory fails. */
 static uint32_t link_piece(gnoi_lines *lines, uint32_t line, uint32_t before, uint32_t slot, int32_t x0, int32_t x1)
 {
@@ -53,11 +72,7 @@ static uint32_t link_piece(gnoi_lines *lines, uint32_t line, uint32_t before, ui
     if (p == 0)
         return 0;
     piece = &lines->pieces[p];
-    piece->x0 = x0;
-    piece->x1 = x1;
-    piece->slot = slot;
-    piece->line = line;
-    piece->chain = 0;
+    set_piece(piece, line, slot, x0, x1);
     if (before) {
         piece->next = lines->pieces[before].next;
         lines->pieces[before].next = p;
@@ -113,6 +128,11 @@ static int compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x
     if (a->farthest > b->surely_before)
         return 1;
     return in_front(a, b, y, x0, x1, cut, a_first);
+}
+
+int gnoi_lines_compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x0, int32_t x1, int32_t *cut, int *a_first)
+{
+    return compare(a, b, y, x0, x1, cut, a_first);
 }
 
 /* Replaces [u,v) of piece p by slot. `before` precedes p. Returns the last piece ending at or before v. No piece is taken out

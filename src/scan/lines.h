@@ -70,4 +70,11 @@ void gnoi_lines_add(gnoi_lines *lines, double y, int32_t xa, int32_t xb);
 /* Inserts the segment [x0,x1) of `slot` into a line; it is cut to the line's range. Returns 1 when any of it is visible now. */
 int gnoi_lines_insert(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x0, int32_t x1);
 
+/* Which of two surfaces is in front over [x0,x1) of a line at y: +1 a, -1 b, 0 they cross at *cut, inside, with a in front on the
+ * left when *a_first. */
+int gnoi_lines_compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x0, int32_t x1, int32_t *cut, int *a_first);
+
+/* A piece that is in no list yet; 0 when memory fails. */
+uint32_t gnoi_lines_new_piece(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x0, int32_t x1);
+
 #endif

@@ -16,34 +16,21 @@
 
 typedef struct boxes {
     gno_context *context;
-    size_t count, capacity;
+    size_t count, box_capacity, caster_capacity;
     gnoi_lbox *box;
     uint32_t *caster;
 } boxes;
 
 static int boxes_reserve(boxes *b, size_t need)
 {
-    size_t capacity = b->capacity;
-    if (need <= b->capacity)
-        return 1;
-    if (!gnoi_reserve(b->context, (void **)&b->caster, &capacity, need, sizeof *b->caster))
-        return 0;
-    /* Both arrays grow alike; when the second fails the first keeps its new size for the release. */
-    gnoi_lbox *box = gnoi_realloc(b->context, b->box, b->capacity, capacity, sizeof *box);
-    if (!box) {
-        uint32_t *caster = gnoi_realloc(b->context, b->caster, capacity, b->capacity, sizeof *caster);
-        b->caster = b->capacity ? caster : NULL;
-        return 0;
-    }
-    b->box = box;
-    b->capacity = capacity;
-    return 1;
+    return gnoi_reserve(b->context, (void **)&b->caster, &b->caster_capacity, need, sizeof *b->caster) &&
+           gnoi_reserve(b->context, (void **)&b->box, &b->box_capacity, need, sizeof *b->box);
 }
 
 static void boxes_free(boxes *b)
 {
-    gnoi_free(b->context, b->box, b->capacity, sizeof *b->box);
-    gnoi_free(b->context, b->caster, b->capacity, sizeof *b->caster);
+    gnoi_free(b->context, b->box, b->box_capacity, sizeof *b->box);
+    gnoi_free(b->context, b->caster, b->caster_capacity, sizeof *b->caster);
 }
 
 int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS])

@@ -297,14 +297,25 @@ static double meet(const face *a, const double origin[3], const double direction
     return inside(a, point) ? t : -1;
 }
 
-/* The visible face along the ray: the nearest, and among those on its plane the highest priority, then the lowest index. */
-static const face *visible(const oracle *o, const double origin[3], const double direction[3], double point[3])
+#define LAYERS 64 /* faces seen through each other along one ray; what lies behind so many is left out */
+
+static int among(const face *a, const face *const *seen, int count)
+{
+    for (int i = 0; i < count; i++)
+        if (seen[i] == a) return 1;
+    return 0;
+}
+
+/* The visible face along the ray once `count` faces are taken away: the nearest, and among those on its plane the highest
+ * priority, then the lowest index. */
+static const face *visible(const oracle *o, const double origin[3], const double direction[3], const face *const *seen, int count,
+                           double point[3])
 {
     const face *best = NULL;
     double at[3], nearest = INFINITY;
     for (size_t i = 0; i < o->face_count; i++) {
         const face *a = &o->faces[i];
-        if (!a->m.two_sided && dot(a->n, direction) >= 0) continue;
+        if ((!a->m.two_sided && dot(a->n, direction) >= 0) || among(a, seen, count)) continue;
         double t = meet(a, origin, direction, nearest, at);
         if (t < 0 || t >= nearest) continue;
         nearest = t;
@@ -315,7 +326,7 @@ static const face *visible(const oracle *o, const double origin[3], const double
     for (size_t i = 0; i < o->face_count; i++) {
         const face *a = &o->faces[i];
         if (a == best || a->p.priority < best->p.priority || (a->p.priority == best->p.priority && a->polygon > best->polygon)) continue;
-        if (!a->m.two_sided && dot(a->n, direction) >= 0) continue;
+        if ((!a->m.two_sided && dot(a->n, direction) >= 0) || among(a, seen, count)) continue;
         if (meet(a, origin, direction, INFINITY, at) < 0 || fabs(dot(plane->n, at) + plane->d) > o->tolerance) continue;
         best = a;
     }
@@ -447,8 +458,10 @@ static void shade(const oracle *o, const lamp *l, const face *a, const double po
 
 static unsigned long mix(unsigned long hash, unsigned long value) { return ((hash ^ value) * 1099511UL + (hash >> 7)) & 0xffffffffUL; }
 
-/* Adds all lamps' light to the sample's colour, and their shadow states to its hash. */
-static void light_point(const oracle *o, const face *a, const double direction[3], oracle_sample *s)
+/* Adds all lamps' light on a face's point, times what the faces before it let through, to the sample's colour, and their
+ * shadow states to its hash. */
+static void light_point(const oracle *o, const face *a, const double point[3], const double direction[3], const double through[3],
+                        oracle_sample *s)
 {
     double plane[3];
     double side = dot(a->n, direction) > 0 ? -1 : 1;
@@ -457,13 +470,13 @@ static void light_point(const oracle *o, const face *a, const double direction[3
         const lamp *l = &o->lamps[i];
         double to[3], light[3] = {0, 0, 0}, colour[3];
         int far = l->l.type == GNO_LIGHT_DIRECTIONAL;
-        for (int k = 0; k < 3; k++) to[k] = far ? -l->direction[k] : l->position[k] - s->point[k];
+        for (int k = 0; k < 3; k++) to[k] = far ? -l->direction[k] : l->position[k] - point[k];
         unit(to);
         /* light from behind the plane is the polygon's own shadow */
-        if (dot(plane, to) > GRAZING && -dot(to, l->direction) >= l->cone) passes(o, l, a, s->point, light);
-        shade(o, l, a, s->point, plane, colour);
+        if (dot(plane, to) > GRAZING && -dot(to, l->direction) >= l->cone) passes(o, l, a, point, light);
+        shade(o, l, a, point, plane, colour);
         for (int k = 0; k < 3; k++) {
-            s->rgb[k] += light[k] * colour[k];
+            s->rgb[k] += through[k] * light[k] * colour[k];
             s->state = mix(s->state, (unsigned long)(light[k] * 1e6 + 0.5));
         }
     }
@@ -482,10 +495,19 @@ oracle_sample oracle_look(const oracle *o, double x, double y)
         direction[k] = o->f[k] + (flat ? 0 : off);
     }
     memset(&s, 0, sizeof s);
-    const face *a = visible(o, origin, direction, s.point);
-    s.polygon = a ? (long)a->polygon : -1;
-    for (int k = 0; k < 3; k++) s.rgb[k] = a ? o->ambient[k] * a->m.ambient[k] : o->image.background[k];
-    if (a) light_point(o, a, direction, &s);
+    const face *seen[LAYERS];
+    double through[3] = {1, 1, 1};
+    for (int i = 0; i < LAYERS && (through[0] > 0 || through[1] > 0 || through[2] > 0); i++) {
+        double point[3];
+        const face *a = seen[i] = visible(o, origin, direction, seen, i, point);
+        if (i == 0) s.polygon = a ? (long)a->polygon : -1;
+        if (i == 0 && a) memcpy(s.point, point, sizeof s.point);
+        s.state = mix(s.state, a ? (unsigned long)a->polygon : 0xffffUL);
+        for (int k = 0; k < 3; k++) s.rgb[k] += through[k] * (a ? o->ambient[k] * a->m.ambient[k] : o->image.background[k]);
+        if (!a) break;
+        light_point(o, a, point, direction, through, &s);
+        for (int k = 0; k < 3; k++) through[k] *= a->m.transmission[k];
+    }
     return s;
 }
 

@@ -65,7 +65,7 @@ static void random_plane(maker *m, double u[3], double v[3])
 
 const char *scene_kind_name(scene_kind kind)
 {
-    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "solids", "blob"};
+    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "solids", "blob", "panes"};
     return names[kind];
 }
 
@@ -340,6 +340,46 @@ static void glass(maker *m)
     soup(m, 4, 1.5, 0.6);
 }
 
+/* A material that lets a random share through in each channel; sometimes one-sided, smooth by chance of the caller's. */
+static int pane_material(maker *m)
+{
+    gno_material g = gno_material_default();
+    double all = between(m, 0.2, 1);
+    int grey = pick(m, 2), index = 0;
+    for (int k = 0; k < 3; k++) {
+        double own = between(m, 0, 1);
+        g.transmission[k] = grey ? all : own;
+        g.ambient[k] = between(m, 0, 0.6);
+        g.diffuse[k] = between(m, 0, 0.6);
+    }
+    g.two_sided = pick(m, 5) != 0;
+    g.shading = pick(m, 2) ? GNO_SHADING_CONSTANT : GNO_SHADING_FLAT;
+    keep(m, gno_scene_add_material(m->scene, &g, &index) == GNO_OK);
+    return index;
+}
+
+static void panes(maker *m)
+{
+    double u[3], v[3], at[3], c[12][3];
+    floor_at(m, -1.5, 4);
+    random_plane(m, u, v);
+    for (int i = 0; i < 6; i++) { /* on one plane, with and without priorities */
+        double x = between(m, -1, 1), y = between(m, -1, 1);
+        int priority = pick(m, 3) - 1, pane = pick(m, 4) != 0;
+        for (int k = 0; k < 3; k++) at[k] = x * u[k] + y * v[k];
+        unsigned count = star(m, at, u, v, 0.5, 1.2, 3 + (unsigned)pick(m, 5), c);
+        int material = pane ? pane_material(m) : any_material(m);
+        keep(m, add_polygon(m->scene, (const double(*)[3])c, count, material, priority));
+    }
+    for (int i = 0; i < 10; i++) {
+        somewhere(m, 1, at);
+        random_plane(m, u, v);
+        unsigned count = star(m, at, u, v, 0.6, 1.4, 3 + (unsigned)pick(m, 5), c);
+        keep(m, add_polygon(m->scene, (const double(*)[3])c, count, pane_material(m), 0));
+    }
+    soup(m, 5, 1.2, 0.9);
+}
+
 /* Rectangles and triangles with corners on whole numbers, mostly along the axes; equal planes and shared edges abound. */
 static void lattice(maker *m)
 {
@@ -502,6 +542,7 @@ gno_scene *random_scene(gno_context *context, scene_kind kind, unsigned seed, in
     case SCENE_LATTICE: lattice(&m); break;
     case SCENE_SOLIDS: solids(&m); break;
     case SCENE_TORCH: floor_at(&m, -1.5, 4); soup(&m, 12, 1.2, 1.2); boxes(&m, 2, 1.5, -1.5); break;
+    case SCENE_PANES: panes(&m); break;
     case SCENE_AROUND: soup(&m, 30, 1.5, 1.8); break;
     default: blob(&m); break;
     }

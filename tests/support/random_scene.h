@@ -18,6 +18,7 @@ typedef enum scene_kind {
     SCENE_TORCH,   /* the light stands in the eye: no shadow can be seen */
     SCENE_SOLIDS,  /* closed bodies in and through each other, wound both ways, some open to the eye from behind */
     SCENE_BLOB,    /* a closed smooth mesh on a plane, Gouraud or Phong */
+    SCENE_PANES,   /* stacks of transparent polygons, lying on each other and through each other and solid things */
     SCENE_KINDS
 } scene_kind;
 

@@ -22,11 +22,12 @@ static const double slab[36] = {-9, -9, -0.1, 9, -9, -0.1, 9, 9, -0.1, -9, 9, -0
 static const int slab_corners[12] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 static const unsigned slab_rings[4] = {0, 4, 8, 12}, slab_polygons[3] = {0, 1, 3};
 
-/* A closed part, an n-gon with a hole, a ground behind the eye too; smooth and gouraud; lights of all kinds. */
+/* A closed part, an n-gon with a hole, a ground behind the eye too; smooth and gouraud; glass over it all; lights of all kinds. */
 static gno_status fill(gno_scene *scene)
 {
     gno_mesh_def mesh = gno_mesh_def_default();
     gno_image_def image = gno_image_def_default();
+    gno_material glass = gno_material_default();
     gno_status status;
     image.width = WIDTH;
     image.height = HEIGHT;
@@ -48,6 +49,10 @@ static gno_status fill(gno_scene *scene)
     mesh.ring_start = slab_rings;
     mesh.corner_vertex = slab_corners;
     mesh.shading = GNO_SHADING_GOURAUD;
+    if (!status) status = gno_scene_add_mesh(scene, &mesh, NULL);
+    glass.transmission[0] = glass.transmission[2] = 0.5;
+    if (!status) status = gno_scene_add_material(scene, &glass, &mesh.material);
+    mesh.transform[11] = 0.5;
     if (!status) status = gno_scene_add_mesh(scene, &mesh, NULL);
     for (int i = 0; i < 4 && !status; i++) {
         gno_light light = gno_light_default();
