@@ -181,7 +181,7 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb
     frame.scene = scene;
     frame.def = *def;
     frame.lamps = scene->shadows->lamps;
-    frame.trees = scene->shadows->trees;
+    frame.casters = scene->shadows->casters;
     frame.lamp_count = (int)scene->shadows->lamp_count;
     frame.rgb = rgb;
     frame.layers = def->layers;

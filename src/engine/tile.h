@@ -37,7 +37,7 @@ typedef struct gnoi_frame_job {
     gnoi_bins bins;
     gnoi_tone *tones; /* one for each material */
     const gnoi_lamp *lamps;
-    const gnoi_tree *trees;
+    const gnoi_casters *casters; /* one for each lamp */
     int lamp_count;
     float *rgb;
     const gno_layers *layers; /* NULL: none */

@@ -73,6 +73,45 @@ static void mark_thin_shadows(gnoi_tile *tile, size_t first_column)
     }
 }
 
+#define FEW_RIMS 16
+
+/* Whether two contour edges, both nearly level, bound a thin piece of shadow or of light between them. */
+static int bound_thin(const gnoi_tile *tile, const gnoi_rim *a, const gnoi_rim *b)
+{
+    double from = (double)(a->x0 > b->x0 ? a->x0 : b->x0), to = (double)(a->x1 < b->x1 ? a->x1 : b->x1), middle = 0.5 * (from + to), ya, yb;
+    if (a->step == b->step || !(from < to))
+        return 0;
+    ya = a->edge.slope != 0 ? a->edge.y + (middle - a->edge.x) / a->edge.slope : a->edge.y;
+    yb = b->edge.slope != 0 ? b->edge.y + (middle - b->edge.x) / b->edge.slope : b->edge.y;
+    return fabs(ya - yb) * tile->job->def.base_lines < 1;
+}
+
+static int is_level(const gnoi_rim *r) { return r->edge.y1 - r->edge.y < (double)(r->x1 - r->x0); }
+
+static void mark_rim(gnoi_tile *tile, const gnoi_rim *r)
+{
+    gnoi_tile_mark_thin(tile, &r->edge, r->edge.y1 > r->edge.y);
+    gnoi_tile_mark_level(tile, (double)r->x0, r->edge.y, (double)r->x1, r->edge.y1);
+}
+
+/* The same of shadows of closed solids. A level edge crosses no line, so which way it runs is not known: it is marked anyway. */
+static void mark_thin_sheets(gnoi_tile *tile, size_t first_column)
+{
+    for (size_t i = first_column; i < tile->column_count; i++) {
+        const gnoi_column *column = &tile->columns[i];
+        const gnoi_rim *rims = tile->store.rims + column->rim;
+        if (column->state != GNOI_COLUMN_SPLIT || column->rim_count > FEW_RIMS)
+            continue;
+        for (uint32_t a = 0; a < column->rim_count; a++) {
+            int thin = rims[a].edge.y1 == rims[a].edge.y && rims[a].x1 - rims[a].x0 > 1;
+            for (uint32_t b = 0; b < column->rim_count && is_level(&rims[a]) && !thin; b++)
+                thin = is_level(&rims[b]) && bound_thin(tile, &rims[a], &rims[b]);
+            if (thin)
+                mark_rim(tile, &rims[a]);
+        }
+    }
+}
+
 void gnoi_tile_light(gnoi_tile *tile)
 {
     const gnoi_frame_job *job = tile->job;
@@ -87,11 +126,13 @@ void gnoi_tile_light(gnoi_tile *tile)
     for (int j = 0; j < job->lamp_count && !tile->failed; j++) {
         for (size_t i = 0; i < count && !tile->failed; i++) {
             gnoi_slot *slot = &tile->slots[ordered[i]];
-            tile->failed |= !gnoi_columns_ask(job->scene, &job->view, &job->lamps[j], &job->trees[j], &slot->receiver, &tile->store,
+            tile->failed |= !gnoi_columns_ask(job->scene, &job->view, &job->lamps[j], &job->casters[j], &slot->receiver, &tile->store,
                                               &tile->columns[slot->first_column + (uint32_t)j]);
         }
-        tile->failed |= !gnoi_columns_finish(&job->view, &job->trees[j], &tile->store);
+        tile->failed |= !gnoi_columns_finish(&job->view, &job->casters[j], &tile->store);
     }
-    if (tile->judging && !tile->failed)
+    if (tile->judging && !tile->failed) {
         mark_thin_shadows(tile, first_column);
+        mark_thin_sheets(tile, first_column);
+    }
 }

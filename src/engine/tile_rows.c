@@ -93,12 +93,12 @@ static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, floa
     }
 }
 
-/* Finds where the column's shadow polygons meet the tile's stretch of a sample line. */
-static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, double y)
+/* Finds where the column's shadow polygons meet pieces that lie between xa and xb of a sample line. */
+static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb)
 {
     const gnoi_frame_job *job = tile->job;
-    return gnoi_column_intervals(job->scene, &job->view, &job->lamps[lamp], &slot->receiver, column, y, tile->x0,
-                                 tile->x0 + tile->width, &tile->store) &&
+    return gnoi_column_intervals(job->scene, &job->view, &job->lamps[lamp], &job->casters[lamp], &slot->receiver, column, y,
+                                 tile->x0 + (double)xa / GNOI_X_ONE, tile->x0 + (double)xb / GNOI_X_ONE, &tile->store) &&
            gnoi_reserve(tile->lines.context, (void **)&tile->parts, &tile->part_capacity, 2 * tile->store.interval_count + 1,
                         sizeof *tile->parts);
 }
@@ -107,16 +107,22 @@ static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_col
 static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, const gnoi_column *column, int lamp)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
-    double known = -HUGE_VAL;
-    for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
-        uint32_t line = pieces[p].line;
-        double y = tile->lines.lines[line].y;
-        if (y != known && !find_intervals(tile, slot, column, lamp, y)) {
+    uint32_t p = slot->chain;
+    while (p) {
+        double y = tile->lines.lines[pieces[p].line].y;
+        int32_t xa = pieces[p].x0, xb = pieces[p].x1;
+        uint32_t end = p;
+        for (; end && tile->lines.lines[pieces[end].line].y == y; end = pieces[end].chain) {
+            xa = pieces[end].x0 < xa ? pieces[end].x0 : xa;
+            xb = pieces[end].x1 > xb ? pieces[end].x1 : xb;
+        }
+        if (!find_intervals(tile, slot, column, lamp, y, xa, xb)) {
             tile->failed = 1;
             return;
         }
-        known = y;
-        split_piece(tile, lamp, &pieces[p], line_offset(tile, row, line), tile->judging ? gnoi_tile_base_line(tile, row, line) : -1);
+        for (; p != end; p = pieces[p].chain)
+            split_piece(tile, lamp, &pieces[p], line_offset(tile, row, pieces[p].line),
+                        tile->judging ? gnoi_tile_base_line(tile, row, pieces[p].line) : -1);
     }
 }
 

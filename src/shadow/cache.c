@@ -8,10 +8,10 @@
 
 static void free_cache(gno_context *context, gnoi_shadow_cache *cache)
 {
-    for (size_t i = 0; cache->trees && i < cache->lamp_count; i++)
-        gnoi_tree_free(context, &cache->trees[i]);
+    for (size_t i = 0; cache->casters && i < cache->lamp_count; i++)
+        gnoi_casters_free(context, &cache->casters[i]);
     gnoi_free(context, cache->halved, cache->lamp_count * cache->solid_count, 1);
-    gnoi_free(context, cache->trees, cache->lamp_count, sizeof *cache->trees);
+    gnoi_free(context, cache->casters, cache->lamp_count, sizeof *cache->casters);
     gnoi_free(context, cache->lamps, cache->lamp_count, sizeof *cache->lamps);
     gnoi_free(context, cache, 1, sizeof *cache);
 }
@@ -21,12 +21,12 @@ typedef struct job {
     gnoi_shadow_cache *cache;
 } job;
 
-static gno_status build_tree(void *user, int worker, size_t piece)
+static gno_status build_casters(void *user, int worker, size_t piece)
 {
     job *j = user;
     (void)worker;
-    return gnoi_tree_build(j->scene, &j->cache->lamps[piece], j->cache->solid_count ? j->cache->halved + piece * j->cache->solid_count : NULL,
-                           &j->cache->trees[piece]);
+    return gnoi_casters_build(j->scene, &j->cache->lamps[piece],
+                              j->cache->solid_count ? j->cache->halved + piece * j->cache->solid_count : NULL, &j->cache->casters[piece]);
 }
 
 /* Whether all that is in sight is seen from outside the solid: an orthographic view begins at a plane, which must not cut it. */
@@ -93,15 +93,15 @@ gno_status gnoi_shadow_cache_build(gno_scene *scene, const gnoi_view *view, int 
         return gnoi_fail(context, GNO_ERROR_LIMIT, "%lu points of light in all; the limit is %d", (unsigned long)n, GNO_MAX_LIGHTS);
     }
     cache->lamps = gnoi_calloc(context, cache->lamp_count, sizeof *cache->lamps);
-    cache->trees = gnoi_calloc(context, cache->lamp_count, sizeof *cache->trees);
+    cache->casters = gnoi_calloc(context, cache->lamp_count, sizeof *cache->casters);
     cache->solid_count = cache->lamp_count * scene->prepared.solid_count <= MOST_HALVED ? scene->prepared.solid_count : 0;
     cache->halved = gnoi_calloc(context, cache->lamp_count * cache->solid_count, 1);
-    if (cache->lamps && cache->trees && cache->halved) {
+    if (cache->lamps && cache->casters && cache->halved) {
         gnoi_lamps_fill(scene, cache->lamps);
         set_halved(scene, view, cache);
         j.scene = scene;
         j.cache = cache;
-        status = gnoi_parallel(context, threads, cache->lamp_count, "shadow matrix", build_tree, &j);
+        status = gnoi_parallel(context, threads, cache->lamp_count, "shadow matrix", build_casters, &j);
     }
     if (status) {
         free_cache(context, cache);

@@ -1,18 +1,18 @@
-/* cache.h -- the lamps of a scene and their caster trees, kept from view to view.
+/* cache.h -- the lamps of a scene and their casters, kept from view to view.
  *
- * Place in the data flow: scene lights -> lamps -> one tree for each (tree.h). Shadows do not depend on the viewer: what is built here
+ * Place in the data flow: scene lights -> lamps -> casters for each (contour.h). Shadows do not depend on the viewer: what is built here
  * serves every later view of the same scene, unless its eye enters a closed solid, and is dropped by gnoi_scene_changed.
  */
 #ifndef GNOI_SHADOW_CACHE_H
 #define GNOI_SHADOW_CACHE_H
 
 #include "project/view.h"
-#include "shadow/tree.h"
+#include "shadow/contour.h"
 
 struct gnoi_shadow_cache {
     size_t lamp_count;
     gnoi_lamp *lamps;
-    gnoi_tree *trees; /* one for each lamp */
+    gnoi_casters *casters; /* one for each lamp */
     size_t solid_count;    /* 0: nothing is halved */
     unsigned char *halved; /* lamp_count x solid_count: closed solids with the lamp outside, whose near sides are left away */
 };

@@ -84,10 +84,12 @@ static int parted_by_edge(const gnoi_pair *p, const vec3 a[3], const vec3 b[3])
     return 0;
 }
 
-/* 1 when receiver and caster, both triangles, do not overlap as the light sees them (separating axes). */
-static int separated(const gnoi_pair *p, const gnoi_poly *caster)
+/* By separating axes. */
+int gnoi_pair_separated(const gnoi_pair *p, const gnoi_poly *caster)
 {
     vec3 c[3];
+    if (!p->triangle || caster->corner_count != 3)
+        return 0;
     for (uint32_t i = 0; i < 3; i++)
         c[i] = gnoi_corner_position(p->scene, caster->corner + i);
     return parted_by_edge(p, p->corner, c) || parted_by_edge(p, c, p->corner);
@@ -279,7 +281,7 @@ gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t ind
     size_t first_edge = columns->edge_count, room = 4 * (size_t)caster->corner_count + 16;
     ring_points r = {NULL, NULL, 0};
     gnoi_caster *c;
-    if (!rises(p, caster, &cut_below, &cut_above) || (p->triangle && caster->corner_count == 3 && separated(p, caster)) ||
+    if (!rises(p, caster, &cut_below, &cut_above) || gnoi_pair_separated(p, caster) ||
         carries(p, caster))
         return GNOI_FOUND_NOTHING;
     if (!gnoi_reserve(columns->context, (void **)&columns->points, &columns->point_capacity, 2 * room, sizeof *columns->points) ||

@@ -85,13 +85,30 @@ static int set_probe_plane(gnoi_probe *probe, const gnoi_pair *p, const gnoi_lpo
     probe->qb = ((b->u - a->u) * (c->q - a->q) - (b->q - a->q) * (c->u - a->u)) / best;
     probe->qc = a->q - probe->qa * a->u - probe->qb * a->v;
     /* Height t over the plane lifts nearness by t q / H (point lamp) or t / cosine. */
-    probe->qc += p->lamp->directional ? lift : lift * a->q;
+    probe->lift = p->lamp->directional ? lift : lift * a->q;
+    probe->qc += probe->lift;
     return 1;
 }
 
-/* Boxes of the region on the light's plane; *probed tells whether the probe may be used (one face only). */
+/* The point of the receiver's plane in the middle of a box on the light's plane. */
+static vec3 point_below(const gnoi_pair *p, const gnoi_frame *frame, const gnoi_lbox *box)
+{
+    vec3 from, along;
+    gnoi_frame_ray(frame, 0.5 * ((double)box->u0 + (double)box->u1), 0.5 * ((double)box->v0 + (double)box->v1), &from, &along);
+    return v3_mad(from, along, -gnoi_form_at(&p->h, from) / v3_dot(p->h.a, along));
+}
+
+static vec3 mean_of(const vec3 *points, int count)
+{
+    vec3 sum = v3(0, 0, 0);
+    for (int i = 0; i < count; i++)
+        sum = v3_add(sum, points[i]);
+    return v3_scale(sum, 1.0 / count);
+}
+
+/* Boxes of the region on the light's plane; *probed tells whether probe and centre may be used (one face only). */
 static int region_boxes(const gnoi_pair *p, const gnoi_view *view, const gnoi_frame *frame, gnoi_lbox boxes[6], gnoi_probe *probe,
-                        int *probed)
+                        int *probed, vec3 *centre)
 {
     const gnoi_receiver *r = p->receiver;
     vec3 hull[GNOI_FRAME_POINTS], corners[4];
@@ -106,6 +123,7 @@ static int region_boxes(const gnoi_pair *p, const gnoi_view *view, const gnoi_fr
         if (p->triangle)
             set_probe_edges(probe, located, 3);
         *probed = set_probe_plane(probe, p, located, hull_count);
+        *centre = mean_of(hull, 3);
         return 1;
     }
     if (!region_corners(view, r, corners))
@@ -121,6 +139,7 @@ static int region_boxes(const gnoi_pair *p, const gnoi_view *view, const gnoi_fr
         box_intersect(&boxes[0], &part);
     else
         boxes[0] = part;
+    *centre = point_below(p, frame, &boxes[0]);
     return 1;
 }
 
@@ -162,6 +181,7 @@ struct gnoi_request {
     gnoi_column *column;
     gnoi_lbox box;
     gnoi_probe probe;
+    vec3 centre; /* a point of the region, on the receiver's plane */
 };
 
 static void caster_rows(const gnoi_receiver *r, const gnoi_caster *c, int *first, int *last)
@@ -205,41 +225,80 @@ static int sort_into_rows(const gnoi_receiver *r, gnoi_columns *columns, gnoi_co
     return 1;
 }
 
-/* Tests all candidates in columns->found. */
-static int settle(const gnoi_pair *p, const gnoi_view *view, gnoi_columns *columns, gnoi_column *column)
+/* Tests all candidates in columns->found; *all when one darkens the whole region. Returns 0 when memory fails. */
+static int try_found(const gnoi_pair *p, const gnoi_view *view, gnoi_columns *columns, int *all)
 {
-    column->caster = (uint32_t)columns->caster_count;
-    for (size_t i = 0; i < columns->found.count; i++) {
+    for (size_t i = 0; i < columns->found.count && !*all; i++) {
         uint32_t c = columns->found.items[i];
         gnoi_found f = c == p->receiver->index ? GNOI_FOUND_NOTHING : gnoi_pair_try(p, view, c, columns);
         if (f == GNOI_FOUND_NO_MEMORY)
             return 0;
-        if (f == GNOI_FOUND_ALL) {
-            columns->full++;
-            columns->ones++;
-            columns->caster_count = column->caster;
-            return 1;
-        }
+        *all |= f == GNOI_FOUND_ALL;
+    }
+    return 1;
+}
+
+static int settle(const gnoi_pair *p, gnoi_columns *columns, gnoi_column *column, int all)
+{
+    if (all) {
+        columns->full++;
+        columns->ones++;
+        columns->caster_count = column->caster;
+        columns->rim_count = column->rim;
+        column->rim_count = 0;
+        column->sheet = 0;
+        return 1;
     }
     column->caster_count = (uint32_t)(columns->caster_count - column->caster);
-    columns->ones += column->caster_count;
-    column->state = column->caster_count || p->lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
+    columns->ones += column->caster_count + column->rim_count;
+    column->state = column->caster_count || column->sheet || p->lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
     return column->caster_count < LONG_COLUMN || sort_into_rows(p->receiver, columns, column);
 }
 
-int gnoi_columns_finish(const gnoi_view *view, const gnoi_tree *tree, gnoi_columns *columns)
+/* One by one: single casters and far sides alike. */
+static int settle_apart(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_lbox *boxes, int count,
+                        gnoi_columns *columns, gnoi_column *column)
+{
+    int all = 0;
+    columns->found.count = 0;
+    for (int i = 0; i < count; i++)
+        if (!gnoi_tree_query(columns->context, &casters->single, NULL, &boxes[i], NULL, &columns->found) ||
+            !gnoi_tree_query(columns->context, &casters->far, NULL, &boxes[i], NULL, &columns->found))
+            return 0;
+    if (count > 1)
+        drop_repeats(&columns->found);
+    return try_found(p, view, columns, &all) && settle(p, columns, column, all);
+}
+
+static int settle_request(const struct gnoi_request *r, const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns)
+{
+    gno_context *context = columns->context;
+    gnoi_sheet_state sheet;
+    int all;
+    r->column->caster = (uint32_t)columns->caster_count;
+    r->column->rim = (uint32_t)columns->rim_count;
+    sheet = gnoi_sheet_try(&r->p, casters, &r->box, &r->probe, r->centre, columns, r->column);
+    all = sheet == GNOI_SHEET_ALL;
+    columns->found.count = 0;
+    if (sheet == GNOI_SHEET_NO_MEMORY ||
+        (sheet == GNOI_SHEET_PIERCED &&
+         !gnoi_tree_query(context, &casters->far, &columns->far_front, &r->box, &r->probe, &columns->found)) ||
+        (!all && !gnoi_tree_query(context, &casters->single, &columns->single_front, &r->box, &r->probe, &columns->found)))
+        return 0;
+    return try_found(&r->p, view, columns, &all) && settle(&r->p, columns, r->column, all);
+}
+
+int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns)
 {
     if (columns->request_count == 0)
         return 1;
-    if (!gnoi_tree_gather(columns->context, tree, &columns->request_box, &columns->front))
+    if (!gnoi_tree_gather(columns->context, &casters->single, &columns->request_box, &columns->single_front) ||
+        !gnoi_tree_gather(columns->context, &casters->far, &columns->request_box, &columns->far_front))
         return 0;
-    for (size_t i = 0; i < columns->request_count; i++) {
-        const struct gnoi_request *r = &columns->requests[i];
-        columns->found.count = 0;
-        if (!gnoi_tree_query(columns->context, tree, &columns->front, &r->box, &r->probe, &columns->found) ||
-            !settle(&r->p, view, columns, r->column))
+    columns->rim_gathered = 0;
+    for (size_t i = 0; i < columns->request_count; i++)
+        if (!settle_request(&columns->requests[i], view, casters, columns))
             return 0;
-    }
     columns->request_count = 0;
     return 1;
 }
@@ -259,13 +318,13 @@ static gnoi_lbox box_union(const gnoi_lbox *a, const gnoi_lbox *b)
 }
 
 /* Lets a receiver wait with its neighbours, after sending off those that it is no neighbour of. */
-static int wait_with_others(const gnoi_pair *p, const gnoi_view *view, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe,
-                            gnoi_columns *columns, gnoi_column *column)
+static int wait_with_others(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_lbox *box,
+                            const gnoi_probe *probe, vec3 centre, gnoi_columns *columns, gnoi_column *column)
 {
     struct gnoi_request *r;
     gnoi_lbox all = columns->request_count ? box_union(&columns->request_box, box) : *box;
     if (columns->request_count == REQUESTS || (columns->request_count && box_side(&all) > REQUEST_SPREAD * box_side(box))) {
-        if (!gnoi_columns_finish(view, tree, columns))
+        if (!gnoi_columns_finish(view, casters, columns))
             return 0;
         all = *box;
     }
@@ -276,34 +335,32 @@ static int wait_with_others(const gnoi_pair *p, const gnoi_view *view, const gno
     r->column = column;
     r->box = *box;
     r->probe = *probe;
+    r->centre = centre;
     columns->request_box = all;
     return 1;
 }
 
-int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_tree *tree,
+int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                      const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column)
 {
     gnoi_pair p;
     gnoi_lbox boxes[6];
     gnoi_probe probe;
+    vec3 centre;
     int n, probed;
     columns->asked++;
-    column->caster = 0;
-    column->caster_count = 0;
+    column->caster = (uint32_t)columns->caster_count;
+    column->rim = (uint32_t)columns->rim_count;
+    column->caster_count = column->rim_count = 0;
+    column->sheet = 0;
     column->rows = GNOI_NONE;
     column->state = GNOI_COLUMN_DARK;
     if (!gnoi_pair_make(&p, scene, view, lamp, receiver))
         return 1;
-    n = region_boxes(&p, view, &tree->frame, boxes, &probe, &probed);
+    n = region_boxes(&p, view, &casters->single.frame, boxes, &probe, &probed, &centre);
     if (n == 1 && probed)
-        return wait_with_others(&p, view, tree, &boxes[0], &probe, columns, column);
-    columns->found.count = 0;
-    for (int i = 0; i < n; i++)
-        if (!gnoi_tree_query(columns->context, tree, NULL, &boxes[i], NULL, &columns->found))
-            return 0;
-    if (n > 1)
-        drop_repeats(&columns->found);
-    return settle(&p, view, columns, column);
+        return wait_with_others(&p, view, casters, &boxes[0], &probe, centre, columns, column);
+    return settle_apart(&p, view, casters, boxes, n, columns, column);
 }
 
 void gnoi_columns_reset(gnoi_columns *columns)
@@ -312,6 +369,7 @@ void gnoi_columns_reset(gnoi_columns *columns)
     columns->request_count = 0;
     columns->caster_count = 0;
     columns->edge_count = 0;
+    columns->rim_count = 0;
 }
 
 void gnoi_columns_free(gnoi_columns *columns)
@@ -320,7 +378,12 @@ void gnoi_columns_free(gnoi_columns *columns)
     gnoi_free(columns->context, columns->edges, columns->edge_capacity, sizeof *columns->edges);
     gnoi_free(columns->context, columns->found.items, columns->found.capacity, sizeof *columns->found.items);
     gnoi_free(columns->context, columns->requests, columns->request_capacity, sizeof *columns->requests);
-    gnoi_free(columns->context, columns->front.nodes.items, columns->front.nodes.capacity, sizeof *columns->front.nodes.items);
+    gnoi_free(columns->context, columns->single_front.nodes.items, columns->single_front.nodes.capacity,
+              sizeof *columns->single_front.nodes.items);
+    gnoi_free(columns->context, columns->far_front.nodes.items, columns->far_front.nodes.capacity, sizeof *columns->far_front.nodes.items);
+    gnoi_free(columns->context, columns->rim_front.nodes.items, columns->rim_front.nodes.capacity, sizeof *columns->rim_front.nodes.items);
+    gnoi_free(columns->context, columns->rims, columns->rim_capacity, sizeof *columns->rims);
+    gnoi_free(columns->context, columns->steps, columns->step_capacity, sizeof *columns->steps);
     gnoi_free(columns->context, columns->rows.items, columns->rows.capacity, sizeof *columns->rows.items);
     gnoi_free(columns->context, columns->points, columns->point_capacity, sizeof *columns->points);
     gnoi_free(columns->context, columns->intervals, columns->interval_capacity, sizeof *columns->intervals);

@@ -16,7 +16,7 @@
 #include "project/clip3.h"
 #include "project/edge.h"
 #include "project/view.h"
-#include "shadow/tree.h"
+#include "shadow/contour.h"
 
 typedef enum gnoi_column_state {
     GNOI_COLUMN_UNKNOWN = 0,
@@ -32,8 +32,23 @@ typedef struct gnoi_caster {
     float area;        /* of the shadow polygon, 0 where it has holes */
 } gnoi_caster;
 
+/* A contour edge as it bounds the shadow on the receiver. A level one keeps its height in y and y1, and crosses no line. */
+typedef struct gnoi_rim {
+    gnoi_edge edge;
+    float x0, x1; /* where it begins and ends in the picture */
+    int step;     /* by how much more far sides cover the receiver to the right of it */
+} gnoi_rim;
+
+/* Where a line crosses a contour edge. */
+typedef struct gnoi_step {
+    double x;
+    int step;
+} gnoi_step;
+
 typedef struct gnoi_column {
     gnoi_column_state state;
+    int sheet; /* far sides of halved solids are over a part of the region */
+    uint32_t rim, rim_count; /* contour edges over the region, into gnoi_columns.rims */
     uint32_t caster, caster_count; /* into gnoi_columns.casters */
     uint32_t rows; /* a long column's casters by pixel row: into gnoi_columns.rows, where offsets into the same list for
                       row 0, 1, ... of the region and an end stand; GNOI_NONE for a short one */
@@ -48,6 +63,10 @@ typedef struct gnoi_columns {
     gnoi_caster *casters;
     size_t edge_count, edge_capacity;
     gnoi_edge *edges;
+    size_t rim_count, rim_capacity;
+    gnoi_rim *rims;
+    size_t step_capacity;
+    gnoi_step *steps;         /* of the line asked for last */
     gnoi_list found;                 /* candidates of the tree */
     gnoi_list rows;
     size_t point_capacity;
@@ -59,7 +78,8 @@ typedef struct gnoi_columns {
     struct gnoi_request *requests;   /* request_capacity of them once made; request_count wait */
     size_t request_count, request_capacity;
     gnoi_lbox request_box;           /* holds all that wait */
-    gnoi_tree_front front;
+    gnoi_tree_front single_front, far_front, rim_front;
+    int rim_gathered;                /* rim_front is that of the requests at hand */
     double asked, ones, full;        /* statistics */
 } gnoi_columns;
 
@@ -78,14 +98,15 @@ typedef struct gnoi_receiver {
 /* Asks for the column of `receiver` for `lamp`; it is valid after gnoi_columns_finish. Receivers near each other in the picture
  * should follow one another, all of one lamp between two calls of finish; receiver and column must stay in place until then.
  * Both return 0 when memory fails. */
-int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_tree *tree,
+int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                      const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column);
-int gnoi_columns_finish(const gnoi_view *view, const gnoi_tree *tree, gnoi_columns *columns);
+int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns);
 
 /* Collects in columns->intervals where the column's shadow polygons and, for a spot, the dark outside of its cone meet line y
- * between xa and xb (intervals may reach beyond). Returns 0 when memory fails. */
-int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver,
-                          const gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns);
+ * between xa and xb (intervals may reach beyond); [xa,xb] lies in the receiver's region. Returns 0 when memory fails. */
+int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                          const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
+                          gnoi_columns *columns);
 
 /* Makes the store empty for the next tile; keeps its memory. */
 void gnoi_columns_reset(gnoi_columns *columns);

@@ -97,6 +97,16 @@ static vec3 to_face(vec3 q, int face)
     }
 }
 
+static vec3 from_face(vec3 q, int face)
+{
+    double s = face & 1 ? -1 : 1;
+    switch (face >> 1) {
+    case 0: return v3(s * q.z, q.x, q.y);
+    case 1: return v3(q.y, s * q.z, q.x);
+    default: return v3(q.x, q.y, s * q.z);
+    }
+}
+
 /* The value that is >= 0 inside one side plane of the face's pyramid. */
 static double pyramid_side(vec3 q, int side)
 {
@@ -130,6 +140,33 @@ static int dominant_face(vec3 q)
     if (y >= z)
         return 2 + (q.y < 0);
     return 4 + (q.z < 0);
+}
+
+int gnoi_frame_face(const gnoi_frame *frame, double u) { return frame->faces == 1 ? 0 : (int)floor(u / FACE_STEP + 0.5); }
+
+void gnoi_frame_ray(const gnoi_frame *frame, double u, double v, vec3 *from, vec3 *along)
+{
+    vec3 across = v3_mad(v3_scale(frame->axis[0], u), frame->axis[1], v);
+    int face = gnoi_frame_face(frame, u);
+    *from = frame->parallel ? v3_add(frame->origin, across) : frame->origin;
+    *along = frame->faces == 6  ? from_face(v3(u - FACE_STEP * face, v, 1), face)
+             : frame->parallel ? frame->axis[2]
+                               : v3_add(frame->axis[2], across);
+}
+
+int gnoi_frame_locate_on(const gnoi_frame *frame, int face, const vec3 *points, int count, gnoi_lpoint *located)
+{
+    if (frame->faces == 1)
+        return gnoi_frame_locate(frame, points, count, located);
+    for (int i = 0; i < count; i++) {
+        vec3 q = to_face(v3_sub(points[i], frame->origin), face);
+        if (!(q.z > 0))
+            return 0;
+        located[i].q = 1 / q.z;
+        located[i].u = q.x * located[i].q + FACE_STEP * face;
+        located[i].v = q.y * located[i].q;
+    }
+    return 1;
 }
 
 static int locate_on_cube(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lpoint *located)

@@ -59,6 +59,15 @@ typedef struct gnoi_lpoint {
  * on several faces). */
 int gnoi_frame_locate(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lpoint *located);
 
+/* Projects points onto one face's plane, also from outside of the face; 0 when one is not before it. */
+int gnoi_frame_locate_on(const gnoi_frame *frame, int face, const vec3 *points, int count, gnoi_lpoint *located);
+
+/* The ray of light that (u,v) stands for: a point on it and the way it goes. */
+void gnoi_frame_ray(const gnoi_frame *frame, double u, double v, vec3 *from, vec3 *along);
+
+/* The face that u lies on. */
+int gnoi_frame_face(const gnoi_frame *frame, double u);
+
 /* The box of points already located. */
 void gnoi_frame_box(const gnoi_frame *frame, const gnoi_lpoint *located, int count, gnoi_lbox *box);
 

@@ -16,7 +16,7 @@ static int in_cone(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_rece
     return v3_dot(v, lamp->axis) >= lamp->cos_half_angle * v3_length(v);
 }
 
-static int add_interval(gnoi_columns *columns, double x0, double x1, const double *transmission)
+int gnoi_interval_add(gnoi_columns *columns, double x0, double x1, const double *transmission)
 {
     gno_shadow_interval *s;
     if (columns->interval_count == columns->interval_capacity &&
@@ -95,7 +95,7 @@ static int add_cone_intervals(const gnoi_view *view, const gnoi_lamp *lamp, cons
     ends[0] = xa;
     ends[n + 1] = xb;
     for (int i = 0; i <= n; i++)
-        if (!in_cone(view, lamp, r, 0.5 * (ends[i] + ends[i + 1]), y) && !add_interval(columns, ends[i], ends[i + 1], NULL))
+        if (!in_cone(view, lamp, r, 0.5 * (ends[i] + ends[i + 1]), y) && !gnoi_interval_add(columns, ends[i], ends[i + 1], NULL))
             return 0;
     return 1;
 }
@@ -107,13 +107,14 @@ static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double
     double *x = columns->crossings;
     uint32_t n = gnoi_edges_cross(columns->edges + c->edge, c->edge_count, y, x);
     for (uint32_t i = 0; i + 1 < n; i += 2)
-        if (x[i] < x[i + 1] && x[i] < xb && x[i + 1] > xa && !add_interval(columns, x[i], x[i + 1], m->transmission))
+        if (x[i] < x[i + 1] && x[i] < xb && x[i + 1] > xa && !gnoi_interval_add(columns, x[i], x[i + 1], m->transmission))
             return 0;
     return 1;
 }
 
-int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver,
-                          const gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
+int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                          const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
+                          gnoi_columns *columns)
 {
     float fy = (float)y, fa = (float)xa, fb = (float)xb;
     uint32_t count = column->caster_count;
@@ -134,6 +135,11 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
                           sizeof *columns->crossings))
             return 0;
         if (!caster_intervals(scene, c, y, xa, xb, columns))
+            return 0;
+    }
+    if (column->sheet) {
+        gnoi_pair p;
+        if (gnoi_pair_make(&p, scene, view, lamp, receiver) && !gnoi_sheet_intervals(&p, view, casters, column, y, xa, xb, columns))
             return 0;
     }
     return !lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns);

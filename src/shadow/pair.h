@@ -31,6 +31,31 @@ typedef enum gnoi_found { GNOI_FOUND_NOTHING, GNOI_FOUND_PART, GNOI_FOUND_ALL, G
  * darkens the whole. */
 gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t index, gnoi_columns *columns);
 
+/* 1 when receiver and caster, both triangles, do not overlap as the light sees them; 0 also for other polygons. */
+int gnoi_pair_separated(const gnoi_pair *p, const gnoi_poly *caster);
+
+/* ---- far sides of halved solids: sheet.c ---- */
+
+typedef enum gnoi_sheet_state {
+    GNOI_SHEET_NOWHERE,  /* no far side is over the region */
+    GNOI_SHEET_ALL,      /* far sides are over all of it */
+    GNOI_SHEET_PART,     /* they may be over a part of it: the contour edges that cross it are appended to the column */
+    GNOI_SHEET_PIERCED,  /* a far side may pass through the receiver: they must be taken one by one */
+    GNOI_SHEET_NO_MEMORY
+} gnoi_sheet_state;
+
+/* How the far sides lie over the region, whose box and probe on the light's plane these are. `centre` is a point
+ * of the receiver's plane: within a receiver that lies whole in its region, else below the middle of the box. */
+gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
+                                vec3 centre, gnoi_columns *columns, gnoi_column *column);
+
+/* Appends the intervals of line y that the column's contour edges bound. Returns 0 when memory fails. */
+int gnoi_sheet_intervals(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_column *column, double y,
+                         double xa, double xb, gnoi_columns *columns);
+
+/* interval.c: appends one interval; transmission NULL: none. Returns 0 when memory fails. */
+int gnoi_interval_add(gnoi_columns *columns, double x0, double x1, const double *transmission);
+
 static inline vec3 gnoi_corner_position(const gno_scene *scene, uint32_t corner)
 {
     return v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]);

@@ -14,23 +14,16 @@
 
 /* ---- boxes ------------------------------------------------------------------------------------------------------ */
 
-typedef struct boxes {
-    gno_context *context;
-    size_t count, box_capacity, caster_capacity;
-    gnoi_lbox *box;
-    uint32_t *caster;
-} boxes;
-
-static int boxes_reserve(boxes *b, size_t need)
+int gnoi_boxes_reserve(gnoi_boxes *b, size_t more)
 {
-    return gnoi_reserve(b->context, (void **)&b->caster, &b->caster_capacity, need, sizeof *b->caster) &&
-           gnoi_reserve(b->context, (void **)&b->box, &b->box_capacity, need, sizeof *b->box);
+    return gnoi_reserve(b->context, (void **)&b->number, &b->number_capacity, b->count + more, sizeof *b->number) &&
+           gnoi_reserve(b->context, (void **)&b->box, &b->box_capacity, b->count + more, sizeof *b->box);
 }
 
-static void boxes_free(boxes *b)
+void gnoi_boxes_free(gnoi_boxes *b)
 {
     gnoi_free(b->context, b->box, b->box_capacity, sizeof *b->box);
-    gnoi_free(b->context, b->caster, b->caster_capacity, sizeof *b->caster);
+    gnoi_free(b->context, b->number, b->number_capacity, sizeof *b->number);
 }
 
 int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS])
@@ -62,15 +55,23 @@ int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GN
     return 4;
 }
 
-/* A polygon of a halved solid that the solid's other side stands in for. */
-static int is_near_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_poly *poly)
+int gnoi_halved_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_poly *poly)
 {
     uint32_t solid = gnoi_solid_of(&scene->prepared, poly);
-    double side = gnoi_lamp_side(lamp, poly->n, poly->d);
-    return halved && halved[solid] && (scene->prepared.solids[solid].outwards ? side > 0 : side < 0);
+    double side;
+    if (!halved || !halved[solid])
+        return 0;
+    side = gnoi_lamp_side(lamp, poly->n, poly->d);
+    return (scene->prepared.solids[solid].outwards ? side > 0 : side < 0) ? -1 : 1;
 }
 
-static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_frame *frame, boxes *b)
+static int is_part(gnoi_tree_part part, int side)
+{
+    return part == GNOI_TREE_FAR ? side > 0 : part == GNOI_TREE_SINGLE ? side == 0 : side >= 0;
+}
+
+static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree_part part,
+                         const gnoi_frame *frame, gnoi_boxes *b)
 {
     const gnoi_prepared *prep = &scene->prepared;
     for (size_t i = 0; i < prep->poly_count; i++) {
@@ -79,14 +80,15 @@ static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const un
         vec3 points[GNOI_FRAME_POINTS];
         gnoi_lbox box[6];
         int n;
-        if ((!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1) || is_near_side(scene, lamp, halved, poly))
+        if ((!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1) ||
+            !is_part(part, gnoi_halved_side(scene, lamp, halved, poly)))
             continue;
         n = gnoi_frame_boxes(frame, points, gnoi_poly_hull(scene, poly, points), box);
-        if (!boxes_reserve(b, b->count + 6))
+        if (!gnoi_boxes_reserve(b, 6))
             return 0;
         for (int k = 0; k < n; k++) {
             b->box[b->count] = box[k];
-            b->caster[b->count++] = (uint32_t)i;
+            b->number[b->count++] = (uint32_t)i;
         }
     }
     return 1;
@@ -132,7 +134,7 @@ static uint32_t quantise(float x, float lo, float scale)
     return (uint32_t)(q < 0 ? 0 : q > top ? top : q);
 }
 
-static void order_boxes(const boxes *b, gnoi_keyed *keys)
+static void order_boxes(const gnoi_boxes *b, gnoi_keyed *keys)
 {
     float lo[SIZE_CLASSES][2], hi[SIZE_CLASSES][2], scale[SIZE_CLASSES][2];
     float whole_lo[2] = {FLT_MAX, FLT_MAX}, whole_hi[2] = {-FLT_MAX, -FLT_MAX}, whole;
@@ -216,30 +218,32 @@ static void node_clear(gnoi_tree_node *node)
 {
     for (int k = 0; k < GNOI_TREE_FAN; k++) {
         node->u0[k] = node->v0[k] = node->z0[k] = FLT_MAX;
-        node->u1[k] = node->v1[k] = -FLT_MAX;
+        node->u1[k] = node->v1[k] = node->z1[k] = -FLT_MAX;
     }
 }
 
-static void node_set(gnoi_tree_node *node, size_t k, float u0, float u1, float w0, float w1, float z0)
+static void node_set(gnoi_tree_node *node, size_t k, const gnoi_lbox *box)
 {
-    node->u0[k] = u0;
-    node->u1[k] = u1;
-    node->v0[k] = w0;
-    node->v1[k] = w1;
-    node->z0[k] = z0;
+    node->u0[k] = box->u0;
+    node->u1[k] = box->u1;
+    node->v0[k] = box->v0;
+    node->v1[k] = box->v1;
+    node->z0[k] = box->z0;
+    node->z1[k] = box->z1;
 }
 
 static void node_set_union(gnoi_tree_node *node, size_t k, const gnoi_tree_node *child)
 {
-    float u0 = FLT_MAX, u1 = -FLT_MAX, w0 = FLT_MAX, w1 = -FLT_MAX, z0 = FLT_MAX;
+    gnoi_lbox all = {FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX};
     for (int i = 0; i < GNOI_TREE_FAN; i++) {
-        u0 = child->u0[i] < u0 ? child->u0[i] : u0;
-        u1 = child->u1[i] > u1 ? child->u1[i] : u1;
-        w0 = child->v0[i] < w0 ? child->v0[i] : w0;
-        w1 = child->v1[i] > w1 ? child->v1[i] : w1;
-        z0 = child->z0[i] < z0 ? child->z0[i] : z0;
+        all.u0 = child->u0[i] < all.u0 ? child->u0[i] : all.u0;
+        all.u1 = child->u1[i] > all.u1 ? child->u1[i] : all.u1;
+        all.v0 = child->v0[i] < all.v0 ? child->v0[i] : all.v0;
+        all.v1 = child->v1[i] > all.v1 ? child->v1[i] : all.v1;
+        all.z0 = child->z0[i] < all.z0 ? child->z0[i] : all.z0;
+        all.z1 = child->z1[i] > all.z1 ? child->z1[i] : all.z1;
     }
-    node_set(node, k, u0, u1, w0, w1, z0);
+    node_set(node, k, &all);
 }
 
 static void plan_levels(gnoi_tree *tree)
@@ -258,16 +262,15 @@ static void plan_levels(gnoi_tree *tree)
 
 static size_t leaf_count(const gnoi_tree *tree) { return (tree->entry_count + GNOI_TREE_FAN - 1) / GNOI_TREE_FAN; }
 
-static void pack(const gno_scene *scene, gnoi_tree *tree, const boxes *b, const gnoi_keyed *keys)
+static void fill(const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, const gnoi_keyed *keys)
 {
     for (size_t i = 0; i < tree->node_count; i++)
         node_clear(&tree->nodes[i]);
     for (size_t i = 0; i < tree->entry_count; i++) {
-        const gnoi_lbox *x = &b->box[keys[i].value];
-        tree->caster[i] = b->caster[keys[i].value];
-        node_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, x->u0, x->u1, x->v0, x->v1, x->z0);
+        tree->caster[i] = b->number[keys[i].value];
+        node_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, &b->box[keys[i].value]);
     }
-    for (size_t i = 0; i < leaf_count(tree); i++)
+    for (size_t i = 0; tree->leaves && i < leaf_count(tree); i++)
         set_leaf(scene, tree, i, &tree->leaves[i]);
     for (int level = 1; level < tree->levels; level++) {
         size_t below = tree->level_first[level - 1], first = tree->level_first[level];
@@ -276,42 +279,52 @@ static void pack(const gno_scene *scene, gnoi_tree *tree, const boxes *b, const 
     }
 }
 
-gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *tree)
+gno_status gnoi_tree_pack(gno_context *context, const gnoi_boxes *b, const gno_scene *scene, gnoi_tree *tree)
 {
-    gno_context *context = scene->context;
-    boxes b = {0};
-    gnoi_keyed *keys = NULL;
+    gnoi_keyed *keys;
+    int good;
+    tree->entry_count = b->count;
+    plan_levels(tree);
+    tree->caster = gnoi_malloc(context, b->count, sizeof *tree->caster);
+    tree->nodes = gnoi_malloc(context, tree->node_count, sizeof *tree->nodes);
+    tree->leaves = scene ? gnoi_malloc(context, leaf_count(tree), sizeof *tree->leaves) : NULL;
+    keys = gnoi_malloc(context, 2 * b->count, sizeof *keys);
+    good = tree->caster && tree->nodes && (tree->leaves || !scene) && keys;
+    if (good) {
+        order_boxes(b, keys);
+        gnoi_sort(keys, keys + b->count, b->count);
+        fill(scene, tree, b, keys);
+    }
+    gnoi_free(context, keys, 2 * b->count, sizeof *keys);
+    return good ? GNO_OK : GNO_ERROR_MEMORY;
+}
+
+gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree_part part,
+                                gnoi_tree *tree)
+{
+    gnoi_boxes b = {0};
     gno_status status = GNO_ERROR_MEMORY;
     memset(tree, 0, sizeof *tree);
-    b.context = context;
+    b.context = scene->context;
     tree->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
-    if (!boxes_reserve(&b, scene->prepared.poly_count + 6) || !collect_boxes(scene, lamp, halved, &tree->frame, &b))
-        goto done;
-    tree->entry_count = b.count;
-    plan_levels(tree);
-    tree->caster = gnoi_malloc(context, b.count, sizeof *tree->caster);
-    tree->nodes = gnoi_malloc(context, tree->node_count, sizeof *tree->nodes);
-    tree->leaves = gnoi_malloc(context, leaf_count(tree), sizeof *tree->leaves);
-    keys = gnoi_malloc(context, 2 * b.count, sizeof *keys);
-    if (!tree->caster || !tree->nodes || !tree->leaves || !keys)
-        goto done;
-    order_boxes(&b, keys);
-    gnoi_sort(keys, keys + b.count, b.count);
-    pack(scene, tree, &b, keys);
-    status = GNO_OK;
-done:
-    gnoi_free(context, keys, 2 * b.count, sizeof *keys);
-    boxes_free(&b);
+    if (collect_boxes(scene, lamp, halved, part, &tree->frame, &b))
+        status = gnoi_tree_pack(scene->context, &b, scene, tree);
+    gnoi_boxes_free(&b);
     if (status)
-        gnoi_tree_free(context, tree);
+        gnoi_tree_free(scene->context, tree);
     return status;
+}
+
+gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *tree)
+{
+    return gnoi_tree_build_part(scene, lamp, halved, GNOI_TREE_ALL, tree);
 }
 
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree)
 {
     gnoi_free(context, tree->caster, tree->entry_count, sizeof *tree->caster);
     gnoi_free(context, tree->nodes, tree->node_count, sizeof *tree->nodes);
-    gnoi_free(context, tree->leaves, leaf_count(tree), sizeof *tree->leaves);
+    gnoi_free(context, tree->leaves, tree->leaves ? leaf_count(tree) : 0, sizeof *tree->leaves);
     tree->caster = NULL;
     tree->nodes = NULL;
     tree->leaves = NULL;
@@ -416,33 +429,75 @@ int gnoi_tree_gather(gno_context *context, const gnoi_tree *tree, const gnoi_lbo
     return 1;
 }
 
-static int query_node(gno_context *context, const gnoi_tree *tree, int level, uint32_t node, const gnoi_lbox *box,
-                      const gnoi_probe *probe, gnoi_list *found)
+/* Bit k: child k ends before depth z. */
+static unsigned before_mask(const gnoi_tree_node *node, float z)
 {
-    unsigned mask = meet_mask(&tree->nodes[tree->level_first[level] + node], box);
+    unsigned mask = 0;
+#if defined(__SSE2__)
+    for (int k = 0; k < GNOI_TREE_FAN; k += 4)
+        mask |= (unsigned)_mm_movemask_ps(_mm_cmplt_ps(_mm_loadu_ps(node->z1 + k), _mm_set1_ps(z))) << k;
+#else
+    for (int k = 0; k < GNOI_TREE_FAN; k++)
+        mask |= (unsigned)(node->z1[k] < z) << k;
+#endif
+    return mask;
+}
+
+/* One query: what is looked for, and where what is found goes. */
+typedef struct query {
+    gno_context *context;
+    const gnoi_tree *tree;
+    const gnoi_lbox *box;
+    const gnoi_probe *probe;
+    gnoi_list *found;
+    int *before; /* NULL: casters that end before the box are listed like others */
+} query;
+
+static int query_node(const query *q, int level, uint32_t node)
+{
+    const gnoi_tree_node *n = &q->tree->nodes[q->tree->level_first[level] + node];
+    unsigned mask = meet_mask(n, q->box);
     if (level == 0 && mask) {
-        if (probe)
-            mask &= probe_mask(&tree->leaves[node], probe);
-        if (!list_room(context, found, GNOI_TREE_FAN))
+        if (q->probe)
+            mask &= probe_mask(&q->tree->leaves[node], q->probe);
+        if (!list_room(q->context, q->found, GNOI_TREE_FAN))
             return 0;
+    }
+    if (q->before) {
+        unsigned before = mask & before_mask(n, q->box->z0);
+        *q->before |= before != 0;
+        mask &= ~before;
     }
     for (; mask; mask &= mask - 1) {
         uint32_t child = node * GNOI_TREE_FAN + lowest_bit(mask);
         if (level == 0)
-            found->items[found->count++] = tree->caster[child];
-        else if (!query_node(context, tree, level - 1, child, box, probe, found))
+            q->found->items[q->found->count++] = q->tree->caster[child];
+        else if (!query_node(q, level - 1, child))
             return 0;
     }
+    return 1;
+}
+
+static int run_query(const query *q, const gnoi_tree_front *front)
+{
+    if (!front)
+        return q->tree->levels == 0 || query_node(q, q->tree->levels - 1, 0);
+    for (size_t i = 0; i < front->nodes.count; i++)
+        if (!query_node(q, front->level, front->nodes.items[i]))
+            return 0;
     return 1;
 }
 
 int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
                     const gnoi_probe *probe, gnoi_list *found)
 {
-    if (!front)
-        return tree->levels == 0 || query_node(context, tree, tree->levels - 1, 0, box, probe, found);
-    for (size_t i = 0; i < front->nodes.count; i++)
-        if (!query_node(context, tree, front->level, front->nodes.items[i], box, probe, found))
-            return 0;
-    return 1;
+    query q = {context, tree, box, probe, found, NULL};
+    return run_query(&q, front);
+}
+
+int gnoi_tree_query_level(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
+                          const gnoi_probe *probe, gnoi_list *found, int *before)
+{
+    query q = {context, tree, box, probe, found, before};
+    return run_query(&q, front);
 }

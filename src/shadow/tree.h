@@ -19,7 +19,7 @@
 
 typedef struct gnoi_tree_node {
     float u0[GNOI_TREE_FAN], u1[GNOI_TREE_FAN], v0[GNOI_TREE_FAN], v1[GNOI_TREE_FAN];
-    float z0[GNOI_TREE_FAN]; /* nearest depth from the light */
+    float z0[GNOI_TREE_FAN], z1[GNOI_TREE_FAN]; /* nearest and farthest depth from the light */
 } gnoi_tree_node;
 
 /* The corners of a lowest node's triangles, relative to an origin near them for the sake of precision. Children that are no
@@ -36,24 +36,52 @@ typedef struct gnoi_probe {
     int edge_count;
     double a[GNOI_PROBE_EDGES], b[GNOI_PROBE_EDGES], c[GNOI_PROBE_EDGES], slack[GNOI_PROBE_EDGES];
     double qa, qb, qc; /* nearness of the receiver's plane, plus half its tolerance */
+    double lift;       /* that half tolerance, as nearness */
 } gnoi_probe;
 
 typedef struct gnoi_tree {
     gnoi_frame frame;
     size_t entry_count;
-    uint32_t *caster;  /* prepared polygon of each entry, in packed order */
+    uint32_t *caster;  /* what each entry is: a prepared polygon, or a contour's edge; in packed order */
     int levels;        /* level 0 holds the entries' boxes; the last level is one node */
     size_t level_first[GNOI_TREE_LEVELS];
     size_t node_count;
     gnoi_tree_node *nodes;
-    gnoi_tree_leaf *leaves; /* one for each node of level 0 */
+    gnoi_tree_leaf *leaves; /* one for each node of level 0; NULL in a tree of edges */
 } gnoi_tree;
 
-/* Builds the tree of every polygon that lets less than all light through. `halved` (one for each solid, or NULL) tells of which
- * solids the polygons facing one way are enough: where eye and lamp are both outside a closed solid, every path from the lamp
- * to a point in sight crosses as many of its polygons outwards as inwards, so the far sides cast the whole shadow. */
+/* A growing list of boxes, each with the number of what it holds; one thing may have several boxes (one for each face). */
+typedef struct gnoi_boxes {
+    gno_context *context;
+    size_t count, box_capacity, number_capacity;
+    gnoi_lbox *box;
+    uint32_t *number;
+} gnoi_boxes;
+
+int gnoi_boxes_reserve(gnoi_boxes *boxes, size_t more); /* 0 when memory fails */
+void gnoi_boxes_free(gnoi_boxes *boxes);
+
+/* Packs boxes into a tree whose frame the caller has set. Leaves without corners unless `scene` is given, whose prepared polygons
+ * the numbers then are. */
+gno_status gnoi_tree_pack(gno_context *context, const gnoi_boxes *boxes, const gno_scene *scene, gnoi_tree *tree);
+
+/* Of which polygons a tree is built. `halved` (one for each solid, or NULL) tells of which solids the polygons facing one way are
+ * enough: where eye and lamp are both outside a closed solid, every path from the lamp to a point in sight crosses as many
+ * of its polygons outwards as inwards, so the far sides cast the whole shadow. */
+typedef enum gnoi_tree_part {
+    GNOI_TREE_ALL,    /* every caster but the near sides of halved solids */
+    GNOI_TREE_SINGLE, /* casters that belong to no halved solid */
+    GNOI_TREE_FAR     /* far sides of halved solids */
+} gnoi_tree_part;
+
+/* Builds the tree of the polygons that let less than all light through. */
 gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *tree);
+gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree_part part,
+                                gnoi_tree *tree);
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree);
+
+/* 1 for a far side, -1 for a near side of a halved solid, 0 for any other polygon. */
+int gnoi_halved_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_poly *poly);
 
 /* A growing list of polygon numbers. */
 typedef struct gnoi_list {
@@ -75,6 +103,10 @@ int gnoi_tree_gather(gno_context *context, const gnoi_tree *tree, const gnoi_lbo
  * one, or NULL. Returns 0 when memory fails. */
 int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
                     const gnoi_probe *probe, gnoi_list *found);
+
+/* The same, but casters whose box ends before the nearest depth of `box` are not listed: *before tells whether there are any. */
+int gnoi_tree_query_level(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
+                          const gnoi_probe *probe, gnoi_list *found, int *before);
 
 /* Up to 8 points whose hull contains the polygon: its outer corners, or a rectangle in its plane. Returns their number. */
 int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS]);

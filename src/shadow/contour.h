@@ -1,0 +1,34 @@
+/* contour.h -- everything that casts shadows from one lamp: single casters, and the far sides of halved solids as sheets with a
+ * contour.
+ *
+ * Place in the data flow: prepared polygons -> trees of casters (tree.h), contour edges -> columns (column.h).
+ * Of a closed solid that eye and lamp are outside of, the far sides alone are casters (tree.h). They hang together in sheets: a
+ * point is in the shadow when any far side lies between it and the lamp, and how many do changes only across the sheets' boundary,
+ * the contour (silhouette) edges as the lamp sees them, or where a far side passes through the receiver. A receiver
+ * that no contour edge crosses and no far side pierces is wholly lit or wholly dark, however many casters are above it.
+ * Invariants: the directed boundary edges of every polygon in `far` cancel but for those in `edges`; all edges run so that
+ * their polygon is to the left on the light's plane (u right, v up).
+ */
+#ifndef GNOI_SHADOW_CONTOUR_H
+#define GNOI_SHADOW_CONTOUR_H
+
+#include "shadow/tree.h"
+
+typedef struct gnoi_contour_edge {
+    uint32_t from, to; /* prepared vertices */
+    uint32_t poly;     /* the far side that it bounds */
+} gnoi_contour_edge;
+
+typedef struct gnoi_casters {
+    gnoi_tree single; /* every other caster */
+    gnoi_tree far;    /* far sides of halved solids */
+    gnoi_tree rim;    /* the contour edges */
+    size_t edge_count, edge_capacity;
+    gnoi_contour_edge *edges;
+} gnoi_casters;
+
+/* halved: see tree.h. */
+gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_casters *casters);
+void gnoi_casters_free(gno_context *context, gnoi_casters *casters);
+
+#endif

@@ -1,0 +1,303 @@
+/* sheet.c -- how the far sides of halved solids lie over a receiver's region: see contour.h and pair.h.
+ *
+ * The far sides above a receiver's plane are a sheet whose only boundary over the region are contour edges, unless one of them
+ * passes through the plane there (then they are taken one by one). So where no contour edge crosses the region one point tells
+ * for all of it, and on a line the number of far sides overhead changes by one at each contour edge.
+ * Which far sides count is said by their corners' heights over the receiver's plane, in one way for all that ask: above it when
+ * no corner is below by more than the tolerance, behind it when none is above.
+ */
+#include "shadow/pair.h"
+
+typedef enum place { ABOVE, BEHIND, THROUGH } place;
+
+static place place_of(const gnoi_pair *p, const gnoi_poly *poly, int *touching)
+{
+    double low = HUGE_VAL, high = -HUGE_VAL;
+    *touching = 0;
+    for (uint32_t i = 0; i < poly->corner_count; i++) {
+        double h = gnoi_form_at(&p->h, gnoi_corner_position(p->scene, poly->corner + i));
+        low = h < low ? h : low;
+        high = h > high ? h : high;
+        *touching += fabs(h) <= p->tolerance;
+    }
+    return low >= -p->tolerance ? ABOVE : high <= p->tolerance ? BEHIND : THROUGH;
+}
+
+/* ---- one point ---------------------------------------------------------------------------------------------------- */
+
+/* The plane across the ray from the lamp to a point, on which the ray is the origin. */
+typedef struct across {
+    vec3 point, e1, e2;
+} across;
+
+static across across_ray(const gnoi_lamp *lamp, vec3 point)
+{
+    across a;
+    vec3 d = lamp->directional ? lamp->to_light : v3_unit(v3_sub(lamp->position, point));
+    a.point = point;
+    a.e1 = v3_unit(v3_cross(d, fabs(d.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0)));
+    a.e2 = v3_cross(d, a.e1);
+    return a;
+}
+
+/* Whether the ray's line meets the polygon, by crossings of the edges to its right. An edge is judged from its lower end, so that
+ * neighbours agree about the one they share. */
+static int meets(const gno_scene *scene, const across *a, const gnoi_poly *poly)
+{
+    vec3 q = v3_sub(gnoi_corner_position(scene, poly->corner + poly->corner_count - 1), a->point);
+    double x0 = v3_dot(q, a->e1), y0 = v3_dot(q, a->e2);
+    int inside = 0;
+    for (uint32_t i = 0; i < poly->corner_count; i++) {
+        double x1, y1;
+        q = v3_sub(gnoi_corner_position(scene, poly->corner + i), a->point);
+        x1 = v3_dot(q, a->e1);
+        y1 = v3_dot(q, a->e2);
+        if ((y0 > 0) != (y1 > 0))
+            inside ^= y0 < y1 ? x0 * y1 - x1 * y0 > 0 : x1 * y0 - x0 * y1 > 0;
+        x0 = x1;
+        y0 = y1;
+    }
+    return inside;
+}
+
+/* Of a polygon that the ray's line meets: whether it does so between the lamp and the receiver. */
+static int is_above(const gnoi_pair *p, const gnoi_poly *poly, vec3 point)
+{
+    int touching;
+    double at_lamp = gnoi_lamp_side(p->lamp, poly->n, poly->d), at_point = v3_dot(v3_from(poly->n), point) + poly->d;
+    place at = place_of(p, poly, &touching);
+    if (at == THROUGH)
+        at = at_lamp * at_point < 0 ? ABOVE : BEHIND;
+    return at == ABOVE && (p->lamp->directional || at_lamp * (at_lamp - at_point) > 0);
+}
+
+/* Number of far sides between the lamp and a point of the receiver, counting no further than `enough`; -1 when memory fails. */
+static int count_above(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, int enough, const gnoi_tree_front *front,
+                       gnoi_columns *columns)
+{
+    const gnoi_prepared *prep = &p->scene->prepared;
+    across a = across_ray(p->lamp, point);
+    gnoi_lpoint l;
+    gnoi_lbox box;
+    int count = 0;
+    if (!gnoi_frame_locate(&casters->far.frame, &point, 1, &l))
+        return 0;
+    gnoi_frame_box(&casters->far.frame, &l, 1, &box);
+    columns->found.count = 0;
+    if (!gnoi_tree_query(columns->context, &casters->far, front, &box, NULL, &columns->found))
+        return -1;
+    for (size_t i = 0; i < columns->found.count && count < enough; i++) {
+        const gnoi_poly *poly = &prep->polys[columns->found.items[i]];
+        count += meets(p->scene, &a, poly) && is_above(p, poly, point);
+    }
+    return count;
+}
+
+/* ---- contour edges over the region ---------------------------------------------------------------------------------- */
+
+static double depth_of(const gnoi_frame *frame, const gnoi_lpoint *l) { return frame->parallel ? -l->q : 1 / l->q; }
+
+static int outside_region(const gnoi_probe *probe, const gnoi_lpoint l[2])
+{
+    for (int e = 0; e < probe->edge_count; e++)
+        if (probe->a[e] * l[0].u + probe->b[e] * l[0].v + probe->c[e] <= probe->slack[e] &&
+            probe->a[e] * l[1].u + probe->b[e] * l[1].v + probe->c[e] <= probe->slack[e])
+            return 1;
+    return 0;
+}
+
+/* Whether the far side that the edge bounds is above the receiver's plane at the edge. */
+static place edge_place(const gnoi_pair *p, const gnoi_contour_edge *e, const vec3 ends[2])
+{
+    int touching;
+    place at = place_of(p, &p->scene->prepared.polys[e->poly], &touching);
+    double h0, h1;
+    if (at != THROUGH)
+        return at;
+    h0 = gnoi_form_at(&p->h, ends[0]);
+    h1 = gnoi_form_at(&p->h, ends[1]);
+    return h0 >= -p->tolerance && h1 >= -p->tolerance ? ABOVE : h0 <= p->tolerance && h1 <= p->tolerance ? BEHIND : THROUGH;
+}
+
+/* The edge's shadow on the receiver, in the picture: 1 appended, 0 not over the region, -1 when it is not to be had. */
+static int add_rim(const gnoi_pair *p, const vec3 ends[2], gnoi_columns *columns)
+{
+    const gnoi_receiver *r = p->receiver;
+    gnoi_rim *rim = &columns->rims[columns->rim_count];
+    double x[2], y[2];
+    for (int i = 0; i < 2; i++) {
+        double w = gnoi_form_at(&p->w, ends[i]);
+        if (!(w > p->w_min) || (!p->lamp->directional && gnoi_form_at(&p->h, ends[i]) > 0.999 * p->lamp_height))
+            return -1;
+        x[i] = gnoi_form_at(&p->x, ends[i]) / w;
+        y[i] = gnoi_form_at(&p->y, ends[i]) / w;
+    }
+    if ((x[0] < r->x0 && x[1] < r->x0) || (x[0] > r->x1 && x[1] > r->x1) || (y[0] < r->y0 && y[1] < r->y0) ||
+        (y[0] > r->y1 && y[1] > r->y1))
+        return 0;
+    if (!gnoi_edge_set(&rim->edge, x[0], y[0], x[1], y[1])) {
+        rim->edge.x = x[0];
+        rim->edge.y = rim->edge.y1 = y[0];
+        rim->edge.slope = 0;
+    }
+    rim->x0 = (float)(x[0] < x[1] ? x[0] : x[1]);
+    rim->x1 = (float)(x[0] < x[1] ? x[1] : x[0]);
+    rim->step = y[1] > y[0] ? -1 : 1;
+    columns->rim_count++;
+    return 1;
+}
+
+static gnoi_sheet_state add_rims(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
+                                 gnoi_columns *columns, gnoi_column *column)
+{
+    const gnoi_prepared *prep = &p->scene->prepared;
+    const gnoi_frame *frame = &casters->rim.frame;
+    int face = gnoi_frame_face(frame, 0.5 * (double)(box->u0 + box->u1)), near_edges = 0;
+    columns->found.count = 0;
+    if (!columns->rim_gathered && !gnoi_tree_gather(columns->context, &casters->rim, &columns->request_box, &columns->rim_front))
+        return GNOI_SHEET_NO_MEMORY;
+    columns->rim_gathered = 1;
+    if (!gnoi_tree_query(columns->context, &casters->rim, &columns->rim_front, box, NULL, &columns->found) ||
+        !gnoi_reserve(columns->context, (void **)&columns->rims, &columns->rim_capacity, columns->rim_count + columns->found.count,
+                      sizeof *columns->rims))
+        return GNOI_SHEET_NO_MEMORY;
+    for (size_t i = 0; i < columns->found.count; i++) {
+        const gnoi_contour_edge *e = &casters->edges[columns->found.items[i]];
+        vec3 ends[2] = {v3_from(prep->positions[e->from]), v3_from(prep->positions[e->to])};
+        gnoi_lpoint l[2];
+        int located = gnoi_frame_locate_on(frame, face, ends, 2, l);
+        place at = ABOVE;
+        if (located && outside_region(probe, l)) {
+            near_edges = 1;
+            continue;
+        }
+        if (!located || !(depth_of(frame, &l[0]) < (double)box->z0) || !(depth_of(frame, &l[1]) < (double)box->z0))
+            at = edge_place(p, e, ends);
+        near_edges |= at != BEHIND;
+        if (at == THROUGH || (at == ABOVE && add_rim(p, ends, columns) < 0))
+            return GNOI_SHEET_PIERCED;
+    }
+    column->rim_count = (uint32_t)(columns->rim_count - column->rim);
+    /* Of a receiver in parts the middle of the box may lie outside of the region, and edges between the two. */
+    column->sheet = column->rim_count || (near_edges && !p->receiver->whole);
+    return column->sheet ? GNOI_SHEET_PART : GNOI_SHEET_NOWHERE;
+}
+
+/* Looks at the far sides about as deep as the receiver: PIERCED when one passes through it or when one that stands on it may go on
+ * below, PART when any is overhead. */
+static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
+                                gnoi_columns *columns)
+{
+    gnoi_probe low = *probe;
+    int overhead = 0, standing = 0, hanging = 0;
+    low.qc -= 3 * probe->lift; /* what touches the plane from below is to be seen too */
+    columns->found.count = 0;
+    if (!gnoi_tree_query_level(columns->context, &casters->far, &columns->far_front, box, &low, &columns->found, &overhead))
+        return GNOI_SHEET_NO_MEMORY;
+    for (size_t i = 0; i < columns->found.count; i++) {
+        const gnoi_poly *poly = &p->scene->prepared.polys[columns->found.items[i]];
+        int touching;
+        place at = place_of(p, poly, &touching);
+        if (gnoi_pair_separated(p, poly))
+            continue;
+        if (at == THROUGH)
+            return GNOI_SHEET_PIERCED;
+        overhead |= at == ABOVE;
+        standing |= at == ABOVE && touching > 1;
+        hanging |= at == BEHIND && touching > 1;
+    }
+    if (standing && hanging)
+        return GNOI_SHEET_PIERCED;
+    return overhead ? GNOI_SHEET_PART : GNOI_SHEET_NOWHERE;
+}
+
+gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
+                                vec3 centre, gnoi_columns *columns, gnoi_column *column)
+{
+    gnoi_sheet_state state = casters->far.entry_count ? look_up(p, casters, box, probe, columns) : GNOI_SHEET_NOWHERE;
+    int count;
+    if (state != GNOI_SHEET_PART)
+        return state;
+    state = add_rims(p, casters, box, probe, columns, column);
+    if (state == GNOI_SHEET_PIERCED) {
+        columns->rim_count = column->rim;
+        column->rim_count = 0;
+        column->sheet = 0;
+    }
+    if (state != GNOI_SHEET_NOWHERE)
+        return state;
+    count = count_above(p, casters, centre, 1, &columns->far_front, columns);
+    return count < 0 ? GNOI_SHEET_NO_MEMORY : count ? GNOI_SHEET_ALL : GNOI_SHEET_NOWHERE;
+}
+
+/* ---- lines ---------------------------------------------------------------------------------------------------------- */
+
+static void sort_steps(gnoi_step *s, size_t count)
+{
+    static const size_t gaps[] = {3280, 1093, 364, 121, 40, 13, 4, 1};
+    for (size_t g = count < 5 ? 7 : 0; g < sizeof gaps / sizeof *gaps; g++)
+        for (size_t i = gaps[g]; i < count; i++) {
+            gnoi_step v = s[i];
+            size_t k = i;
+            for (; k >= gaps[g] && s[k - gaps[g]].x > v.x; k -= gaps[g])
+                s[k] = s[k - gaps[g]];
+            s[k] = v;
+        }
+}
+
+static size_t cross_rims(const gnoi_columns *columns, const gnoi_column *column, double y)
+{
+    size_t n = 0;
+    for (uint32_t i = column->rim; i < column->rim + column->rim_count; i++) {
+        const gnoi_rim *r = &columns->rims[i];
+        if (y < r->edge.y || y >= r->edge.y1)
+            continue;
+        columns->steps[n].x = r->edge.x + (y - r->edge.y) * r->edge.slope;
+        columns->steps[n++].step = r->step;
+    }
+    sort_steps(columns->steps, n);
+    return n;
+}
+
+/* The middle of the widest piece between crossings: the place to count at that rounding cannot put on the wrong side of one. */
+static double widest_middle(const gnoi_step *s, size_t count, double xa, double xb)
+{
+    double from = xa, widest = -1, middle = xa;
+    for (size_t i = 0; i <= count; i++) {
+        double to = i < count && s[i].x < xb ? s[i].x : xb;
+        if (to - from > widest) {
+            widest = to - from;
+            middle = 0.5 * (from + to);
+        }
+        from = to > from ? to : from;
+    }
+    return middle;
+}
+
+int gnoi_sheet_intervals(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_column *column, double y,
+                         double xa, double xb, gnoi_columns *columns)
+{
+    vec3 point;
+    double x, begin = -HUGE_VAL;
+    size_t n;
+    int count;
+    if (!gnoi_reserve(columns->context, (void **)&columns->steps, &columns->step_capacity, column->rim_count, sizeof *columns->steps))
+        return 0;
+    n = cross_rims(columns, column, y);
+    x = widest_middle(columns->steps, n, xa, xb);
+    point = gnoi_view_point(view, x, y, gnoi_plane_at(&p->receiver->nearness, x, y));
+    count = count_above(p, casters, point, 1 << 30, NULL, columns);
+    if (count < 0)
+        return 0;
+    for (size_t i = 0; i < n && columns->steps[i].x <= x; i++)
+        count -= columns->steps[i].step;
+    for (size_t i = 0; i <= n; i++) {
+        double end = i < n ? columns->steps[i].x : HUGE_VAL;
+        if (count > 0 && begin < end && begin < xb && end > xa && !gnoi_interval_add(columns, begin, end, NULL))
+            return 0;
+        begin = end;
+        if (i < n)
+            count += columns->steps[i].step;
+    }
+    return 1;
+}
