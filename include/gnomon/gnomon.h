@@ -163,9 +163,10 @@ typedef struct gno_texture {
     double scale[2];       /* default 1, not 0; negative turns the pattern round */
     gno_wrap wrap;
     gno_texture_filter filter;
+    gno_procedural procedural; /* of kind procedural, which reads nothing else here: it has a frame of its own */
 } gno_texture;
 
-/* kind none, map as given; the other fields as that map's defaults. */
+/* kind none, map as given; the other fields as that map's defaults; procedural: wood. */
 GNO_API gno_texture gno_texture_default(gno_texture_map map);
 
 typedef enum gno_bump_kind {

@@ -11,7 +11,6 @@
 const char *const gnoi_shading_names[] = {"flat", "constant", "gouraud", "phong", NULL};
 
 static const char *const maps[] = {"uv", "planar", "cylindrical", "spherical", NULL};
-static const char *const procedurals[] = {"wood", "marble", "checker", "brick", "noise", NULL};
 
 typedef struct material_entry {
     gno_material material;
@@ -43,7 +42,7 @@ static const gnoi_field fields[FIELDS] = {
 
 typedef struct texture_entry {
     const char *image;
-    int map, procedural, seed;
+    int map, seed;
     double origin[3], u[3], v[3], light[3], dark[3], rings;
 } texture_entry;
 
@@ -52,8 +51,7 @@ enum { T_IMAGE, T_MAP, T_PROCEDURAL, T_LIGHT, T_DARK, T_RINGS, T_SEED, T_ORIGIN,
 static const gnoi_field texture_fields[T_FIELDS] = {
     [T_IMAGE] = {.key = "image", .kind = GNOI_FIELD_TEXT, .offset = offsetof(texture_entry, image)},
     [T_MAP] = {.key = "map", .kind = GNOI_FIELD_CHOICE, .offset = offsetof(texture_entry, map), .choices = maps},
-    [T_PROCEDURAL] = {.key = "procedural", .kind = GNOI_FIELD_CHOICE, .offset = offsetof(texture_entry, procedural),
-                      .choices = procedurals},
+    [T_PROCEDURAL] = {.key = "procedural", .kind = GNOI_FIELD_NODE},
     [T_LIGHT] = {.key = "light", .kind = GNOI_FIELD_COLOUR, .offset = offsetof(texture_entry, light)},
     [T_DARK] = {.key = "dark", .kind = GNOI_FIELD_COLOUR, .offset = offsetof(texture_entry, dark)},
     [T_RINGS] = {.key = "rings", .kind = GNOI_FIELD_ABOVE_0, .offset = offsetof(texture_entry, rings)},
@@ -98,9 +96,6 @@ static gno_status check_texture(const gnoi_yaml *yaml, const gnoi_yaml_node *nod
     for (int i = T_LIGHT; i <= T_SEED; i++) {
         if (seen[T_IMAGE] && seen[i]) return gnoi_yaml_fail(yaml, seen[i], GNO_ERROR_INPUT, "has no meaning for an image");
     }
-    if (seen[T_PROCEDURAL] && seen[T_MAP]) {
-        return gnoi_yaml_fail(yaml, seen[T_MAP], GNO_ERROR_INPUT, "has no meaning for a procedural texture");
-    }
     return seen[T_SCALE] ? check_texture_scale(yaml, seen[T_SCALE]) : GNO_OK;
 }
 
@@ -126,7 +121,7 @@ static gno_status check_bump(const gnoi_yaml *yaml, const gnoi_yaml_node *node)
 
 static void note_undrawn(gnoi_scene_reader *reader, const material_entry *entry, const gnoi_yaml_node *const *seen)
 {
-    if (seen[TEXTURE]) reader->undrawn |= GNOI_UNDRAWN_TEXTURE;
+    if (seen[TEXTURE] && entry->material.texture.kind == GNO_TEXTURE_NONE) reader->undrawn |= GNOI_UNDRAWN_TEXTURE;
     if (seen[BUMP]) reader->undrawn |= GNOI_UNDRAWN_BUMP;
     if (entry->reflection[0] > 0 || entry->reflection[1] > 0 || entry->reflection[2] > 0) {
         reader->undrawn |= GNOI_UNDRAWN_REFLECTION;
@@ -143,7 +138,10 @@ static gno_status read_material(gnoi_scene_reader *reader, const gnoi_yaml_node 
     entry.material = gno_material_default();
     entry.ior = 1;
     gno_status status = gnoi_read_fields(reader->yaml, node, fields, FIELDS, &entry, seen);
-    if (status == GNO_OK && seen[TEXTURE]) status = check_texture(reader->yaml, seen[TEXTURE]);
+    const gnoi_yaml_node *texture = status == GNO_OK ? seen[TEXTURE] : NULL;
+    int procedural = texture && texture->kind == GNOI_YAML_MAPPING && gnoi_yaml_find(texture, "procedural") && !gnoi_yaml_find(texture, "image");
+    if (procedural) status = gnoi_read_procedural(reader, texture, &entry.material.texture);
+    else if (texture) status = check_texture(reader->yaml, texture);
     if (status == GNO_OK && seen[BUMP]) status = check_bump(reader->yaml, seen[BUMP]);
     if (status != GNO_OK) return status;
     note_undrawn(reader, &entry, seen);

@@ -67,6 +67,10 @@ gno_status gnoi_read_ambient(const gnoi_yaml *yaml, const gnoi_yaml_node *node, 
 gno_status gnoi_read_camera(const gnoi_yaml *yaml, const gnoi_yaml_node *node, gno_camera *camera);
 gno_status gnoi_read_lights(gnoi_scene_reader *reader, const gnoi_yaml_node *node);
 gno_status gnoi_read_materials(gnoi_scene_reader *reader, const gnoi_yaml_node *node);
+
+/* scene_procedural.c: `texture` and `bump` with a key `procedural`. */
+gno_status gnoi_read_procedural(gnoi_scene_reader *reader, const gnoi_yaml_node *node, gno_texture *texture);
+gno_status gnoi_read_procedural_bump(gnoi_scene_reader *reader, const gnoi_yaml_node *node, gno_bump *bump);
 gno_status gnoi_read_objects(gnoi_scene_reader *reader, const gnoi_yaml_node *node);
 gno_status gnoi_read_transform(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double transform[12]);
 

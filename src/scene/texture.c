@@ -27,6 +27,7 @@ gno_texture gno_texture_default(gno_texture_map map)
     fill(t.scale, 2, 1);
     t.wrap = GNO_WRAP_REPEAT;
     t.filter = GNO_FILTER_BOX;
+    t.procedural = gno_procedural_default(GNO_PATTERN_WOOD);
     return t;
 }
 
@@ -78,6 +79,12 @@ static gno_status check_texture(const gno_scene *scene, const char *what, const 
                              choices[i].most);
     if (t->kind == GNO_TEXTURE_NONE)
         return GNO_OK;
+    if (t->kind == GNO_TEXTURE_PROCEDURAL) {
+        const char *field;
+        return gno_procedural_is_valid(&t->procedural, &field)
+                   ? GNO_OK
+                   : gnoi_fail(context, GNO_ERROR_ARGUMENT, "%s: procedural.%s is out of range", what, field);
+    }
     if (t->kind == GNO_TEXTURE_IMAGE && (t->image < 0 || (size_t)t->image >= scene->image_count))
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "%s: image %d of %zu", what, t->image, scene->image_count);
     return check_place(context, what, t);

@@ -83,17 +83,6 @@ double gno_noise(const double point[3], unsigned seed, gno_noise_weight weight)
     return gno_noise_gradient(point, seed, weight, gradient);
 }
 
-gno_fractal gno_fractal_default(void)
-{
-    gno_fractal fractal;
-    fractal.octaves = 5;
-    fractal.gain = 0.5;
-    fractal.lacunarity = 2;
-    fractal.seed = 0;
-    fractal.weight = GNO_NOISE_SMOOTH;
-    return fractal;
-}
-
 /* The share of an octave that is left when a sample stands for so many of its cells. The share that comes nearest to the mean over
  * a square of that side (covariance over variance, measured) is 0.94, 0.78, 0.55, 0.38, 0.19 for 0.5, 1, 1.6, 2.1, 3.1 cells; this
  * is 0.94, 0.80, 0.56, 0.35, 0.04, and ends. */

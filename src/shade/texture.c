@@ -14,24 +14,35 @@ static vec3 apply(const double m[12], vec3 p, double w)
               m[8] * p.x + m[9] * p.y + m[10] * p.z + w * m[11]);
 }
 
-gnoi_footprint gnoi_sight_footprint(const gnoi_sight *sight, double x, double y)
+static void store(vec3 v, double out[3])
+{
+    out[0] = v.x;
+    out[1] = v.y;
+    out[2] = v.z;
+}
+
+/* A perspective view sees eye + ray/z: numerator eye z + ray and divisor z are linear over the picture. */
+gno_footprint gnoi_sight_footprint(const gnoi_sight *sight, double x, double y)
 {
     const gnoi_view *view = sight->view;
+    const gnoi_screen_plane *nearness = sight->nearness;
     const double *m = object_of(sight)->to_local;
-    double z = gnoi_plane_at(sight->nearness, x, y);
+    double z = gnoi_plane_at(nearness, x, y);
     vec3 p = gnoi_view_point(view, x, y, z), dx = v3_scale(view->right, view->unit), dy = v3_scale(view->up, -view->unit);
-    gnoi_footprint f;
+    gno_footprint f;
+    f.wx = f.wy = 0;
     if (view->orthographic) {
-        dx = v3_mad(dx, view->forward, -sight->nearness->fx);
-        dy = v3_mad(dy, view->forward, -sight->nearness->fy);
+        dx = v3_mad(dx, view->forward, -nearness->fx);
+        dy = v3_mad(dy, view->forward, -nearness->fy);
     } else {
-        vec3 ray = v3_sub(p, view->eye);
-        dx = v3_scale(v3_mad(dx, ray, -sight->nearness->fx), 1 / z);
-        dy = v3_scale(v3_mad(dy, ray, -sight->nearness->fy), 1 / z);
+        f.wx = nearness->fx / z;
+        f.wy = nearness->fy / z;
+        dx = v3_mad(v3_scale(dx, 1 / z), view->eye, f.wx);
+        dy = v3_mad(v3_scale(dy, 1 / z), view->eye, f.wy);
     }
-    f.point = apply(m, p, 1);
-    f.dx = apply(m, dx, 0);
-    f.dy = apply(m, dy, 0);
+    store(apply(m, p, 1), f.point);
+    store(apply(m, dx, f.wx), f.dx);
+    store(apply(m, dy, f.wy), f.dy);
     return f;
 }
 
@@ -87,7 +98,15 @@ void gnoi_texture_at(const gnoi_sight *sight, const gno_texture *texture, gnoi_m
                      double ys, float rgba[4])
 {
     rgba[0] = rgba[1] = rgba[2] = rgba[3] = 1;
-    if (texture->kind == GNO_TEXTURE_IMAGE) {
+    if (texture->kind == GNO_TEXTURE_PROCEDURAL) {
+        /* A pixel whose centre looks past the plane's horizon is taken about the point it sees. */
+        int past = !sight->view->orthographic && !(gnoi_plane_at(sight->nearness, x, y) > 0);
+        gno_footprint footprint = gnoi_sight_footprint(sight, past ? xs : x, past ? ys : y);
+        double rgb[3];
+        gno_procedural_colour(&texture->procedural, &footprint, rgb);
+        for (int k = 0; k < 3; k++)
+            rgba[k] = (float)rgb[k];
+    } else if (texture->kind == GNO_TEXTURE_IMAGE) {
         const gnoi_pattern *pattern = gnoi_mapping_seek(mapping, sight, texture, xs, ys);
         gnoi_filter_pixel(&sight->scene->images[texture->image], texture, pattern, x, y, xs, ys, rgba);
         for (int k = 0; k < 3 && rgba[3] < 1; k++)

@@ -29,12 +29,8 @@ typedef struct gnoi_sight {
     gnoi_interp *interp;
 } gnoi_sight;
 
-/* A point in mesh space and how far it moves from a pixel to the next, right and down. */
-typedef struct gnoi_footprint {
-    vec3 point, dx, dy;
-} gnoi_footprint;
-
-gnoi_footprint gnoi_sight_footprint(const gnoi_sight *sight, double x, double y);
+/* What the pixel whose centre is picture point (x,y) sees of the polygon's plane, in mesh space. */
+gno_footprint gnoi_sight_footprint(const gnoi_sight *sight, double x, double y);
 
 /* Makes the mapping's pattern valid around picture point (x,y). `mapping` is zero before its first use. */
 const gnoi_pattern *gnoi_mapping_seek(gnoi_mapping *mapping, const gnoi_sight *sight, const gno_texture *texture, double x, double y);
