@@ -215,7 +215,7 @@ deps:
 install: all
 	install -d '$(DESTDIR)$(BINDIR)' '$(DESTDIR)$(LIBDIR)/pkgconfig' '$(DESTDIR)$(INCLUDEDIR)/gnomon'
 	install -m 755 $(BUILD)/gnomon '$(DESTDIR)$(BINDIR)'
-	install -m 644 include/gnomon/gnomon.h include/gnomon/gnomon_math.h include/gnomon/gnomon_io.h '$(DESTDIR)$(INCLUDEDIR)/gnomon'
+	install -m 644 include/gnomon/gnomon.h include/gnomon/gnomon_math.h include/gnomon/gnomon_clip.h include/gnomon/gnomon_io.h '$(DESTDIR)$(INCLUDEDIR)/gnomon'
 	install -m 644 $(STATIC) '$(DESTDIR)$(LIBDIR)'
 	install -m 755 $(SHARED:%=%.$(VERSION)) '$(DESTDIR)$(LIBDIR)'
 	for lib in libgnomon libgnomon-io; do \
@@ -225,7 +225,7 @@ install: all
 
 uninstall:
 	rm -f '$(DESTDIR)$(BINDIR)/gnomon'
-	rm -f $(foreach h,gnomon gnomon_math gnomon_io,'$(DESTDIR)$(INCLUDEDIR)/gnomon/$(h).h')
+	rm -f $(foreach h,gnomon gnomon_math gnomon_clip gnomon_io,'$(DESTDIR)$(INCLUDEDIR)/gnomon/$(h).h')
 	-rmdir '$(DESTDIR)$(INCLUDEDIR)/gnomon'
 	for lib in libgnomon libgnomon-io; do \
 	  rm -f '$(DESTDIR)$(LIBDIR)'/$$lib.a '$(DESTDIR)$(LIBDIR)'/$$lib.so '$(DESTDIR)$(LIBDIR)'/$$lib.so.$(SOMAJOR) \
