@@ -219,6 +219,8 @@ typedef struct gno_light {
     double falloff_k;    /* K of 1/(d+K); default 1 */
     int distance_from_viewer; /* linear falloff: 1 (default) d from the viewer, 0 from the light */
     int samples;         /* area: points each way, >= 1; default 4 */
+    double softness;     /* D of shadows that weaken with the distance d of their caster, in scene units: a caster that passes t
+                            leaves 1 - (1 - t) / (1 + d/D) of the light; 0 (default): no weakening */
 } gno_light;
 
 /* A white point light at the origin without falloff. */

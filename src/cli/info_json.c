@@ -65,7 +65,7 @@ static void print_light(const gno_light *light, const char *name)
         printf(", \"samples\": %d, ", light->samples);
     }
     vector("intensity", light->intensity);
-    printf(", \"falloff\": \"%s\"}", falloff_name(light->falloff));
+    printf(", \"falloff\": \"%s\", \"softness\": %.9g}", falloff_name(light->falloff), light->softness);
 }
 
 static void print_material(const gno_material *material, size_t polygons)

@@ -111,6 +111,9 @@ static void print_lights(const summary *found)
         if (light.falloff != GNO_FALLOFF_NONE) {
             printf(", falloff %s", falloff_name(light.falloff));
         }
+        if (light.softness > 0) {
+            printf(", softness %g", light.softness);
+        }
         putchar('\n');
     }
 }

@@ -138,6 +138,19 @@ static uint32_t *map_lamps(const gno_scene *scene, size_t lamp_count)
     return light;
 }
 
+/* Whether light may arrive in more ways than all or nothing. */
+static int is_tinted(const gno_scene *scene)
+{
+    int tinted = 0;
+    for (size_t i = 0; i < scene->material_count; i++) {
+        const double *t = scene->materials[i].transmission;
+        tinted |= t[0] > 0 || t[1] > 0 || t[2] > 0 || gnoi_has_holes(scene, &scene->materials[i]);
+    }
+    for (size_t i = 0; i < scene->light_count; i++)
+        tinted |= scene->lights[i].light.softness > 0;
+    return tinted;
+}
+
 /* Seconds since *from, which becomes now. */
 static double lap(double *from)
 {
@@ -183,6 +196,7 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb
     frame.lamps = scene->shadows->lamps;
     frame.casters = scene->shadows->casters;
     frame.lamp_count = (int)scene->shadows->lamp_count;
+    frame.tinted = is_tinted(scene);
     frame.rgb = rgb;
     frame.layers = def->layers;
     status = gnoi_bins_build(scene, &frame.view, def->lines, threads, &frame.bins);

@@ -36,6 +36,7 @@ typedef struct gnoi_frame_job {
     gnoi_view view;
     gnoi_bins bins;
     gnoi_tone *tones; /* one for each material */
+    int tinted; /* some surface lets light through, or some lamp's shadows weaken: what is lit has a colour of its own on each line */
     const gnoi_lamp *lamps;
     const gnoi_casters *casters; /* one for each lamp */
     int lamp_count;
@@ -121,9 +122,10 @@ typedef struct gnoi_tile {
     gnoi_stacks stacks;
     int veiled;                            /* some piece on the lines has a tint */
     int was_veiled;                        /* on some lines of the tile */
+    int tinted;                            /* colours are kept by line, not lengths: veiled, or judging where the job is tinted */
     gnoi_veil veil;                        /* of the surface at hand */
     gnoi_veil bare;                        /* how much less than all reaches the eye where no opaque surface is seen */
-    gnoi_tinted_lines *lit_veil;           /* beside lit_colour, one for each lamp, NULL until a tile is veiled */
+    gnoi_tinted_lines *lit_veil;           /* beside lit_colour, one for each lamp, NULL until a tile is tinted */
     int lit_lamp;                          /* of the sample at hand */
     size_t slot_count, slot_capacity;
     gnoi_slot *slots;                      /* beside lines.depths, same numbering */
@@ -156,7 +158,7 @@ typedef struct gnoi_tile {
     float line_acc[GNOI_BASE_LINES][3][GNOI_TILE_PIXELS]; /* the pixel's colour on each base line */
     unsigned char thin[GNOI_TILE_PIXELS];  /* something thin passes: to be refined whatever the base lines saw */
     float cover_by_line[GNOI_BASE_LINES][GNOI_BATCH]; /* beside the batch */
-    float share_by_line[GNOI_BASE_LINES][3][GNOI_BATCH]; /* in its place where the tile is veiled: of the sample's colour */
+    float share_by_line[GNOI_BASE_LINES][3][GNOI_BATCH]; /* in its place where the tile is tinted: of the sample's colour */
     double spans, shaded, refined;
     gnoi_fragments fragments;
 } gnoi_tile;
@@ -186,10 +188,15 @@ void gnoi_tile_veil(gnoi_tile *tile, int row, const gnoi_slot *slot, int first, 
 void gnoi_tile_veiled_background(gnoi_tile *tile, int row);
 void gnoi_tile_uncover(gnoi_tile *tile, int first, int last); /* takes back the coverage by the slot at hand: it hides nothing */
 int gnoi_tile_veil_ready(gnoi_tile *tile);
+
+/* tile_stack.c, for tile_rows.c where the tile is tinted: light that came through to [x0,x1) of a piece, on a base line or another (-1). */
 void gnoi_tile_add_tinted_light(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float x0, float x1, const double light[3], int line);
+
+/* tile_soft.c: splits one piece where the lamp's shadows weaken with distance; dy, line as in tile_rows.c. */
+void gnoi_tile_split_soft(gnoi_tile *tile, int lamp, const gnoi_slot *slot, const gnoi_piece *piece, float dy, int line);
 void gnoi_tinted_lines_clear(gnoi_tinted_lines *lines, int first, int last);
 
-/* tile_stack.c, for tile_shade.c where the tile is veiled: sample i of the batch, or a sample with the colour rgb, as the surfaces
+/* tile_stack.c, for tile_shade.c where the tile is tinted: sample i of the batch, or a sample with the colour rgb, as the surfaces
  * before it leave it (lit: a part that tile->lit_lamp alone reaches); a colour into the picture, by lines. */
 void gnoi_tile_tint_sample(gnoi_tile *tile, int i, int column, const gnoi_cells *cells, int lit);
 void gnoi_tile_add_tinted(gnoi_tile *tile, int row, int column, const gnoi_cells *cells, int lit, float rgb[3]);
@@ -203,6 +210,9 @@ void gnoi_tile_row(gnoi_tile *tile, int row);
 
 /* tile_rows.c: adds light times length to the pixels of [x0,x1), in pixels from the tile's left side. */
 void gnoi_tile_add_light(float colour[3][GNOI_TILE_W], float x0, float x1, const double light[3]);
+
+/* tile_rows.c: adds a part [a,b) of a piece that a lamp reaches with this much light, in pixels from the tile's left side. */
+void gnoi_tile_add_lit(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float a, float b, const double light[3], float dy, int line);
 
 /* tile_rows.c: which of its row's base lines a line is; the one line of the apron above is the last, of the apron below the first. */
 int gnoi_tile_base_line(const gnoi_tile *tile, int row, uint32_t line);

@@ -69,10 +69,30 @@ int gnoi_tile_base_line(const gnoi_tile *tile, int row, uint32_t line)
     return row == 0 ? tile->job->def.base_lines - 1 : (int)(line - tile->row_line[row]);
 }
 
+/* The base line that a line is while they are made, else -1. */
+static int base_line_of(const gnoi_tile *tile, int row, uint32_t line)
+{
+    return tile->judging ? gnoi_tile_base_line(tile, row, line) : -1;
+}
+
 /* How far below the row's middle a line runs, in pixels. */
 static float line_offset(const gnoi_tile *tile, int row, uint32_t line)
 {
     return (float)(tile->lines.lines[line].y - (tile->y0 + row - 0.5));
+}
+
+static inline void add_lit(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float a, float b, const double light[3], float dy, int line)
+{
+    cells_add(&tile->lit[lamp], a, b, dy, line);
+    if (tile->tinted)
+        gnoi_tile_add_tinted_light(tile, lamp, piece, a, b, light, line);
+    else
+        add_light(tile->lit_colour[lamp], a, b, light);
+}
+
+void gnoi_tile_add_lit(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float a, float b, const double light[3], float dy, int line)
+{
+    add_lit(tile, lamp, piece, a, b, light, dy, line);
 }
 
 /* Splits one piece by the intervals of its line and adds what is lit. */
@@ -85,11 +105,7 @@ static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, floa
         float a = (float)(part->x0 - tile->x0), b = (float)(part->x1 - tile->x0);
         if (b - a < LEAK_LENGTH || (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0)))
             continue;
-        cells_add(&tile->lit[lamp], a, b, dy, line);
-        if (tile->veiled)
-            gnoi_tile_add_tinted_light(tile, lamp, piece, a, b, part->light, line);
-        else
-            add_light(tile->lit_colour[lamp], a, b, part->light);
+        add_lit(tile, lamp, piece, a, b, part->light, dy, line);
     }
 }
 
@@ -103,8 +119,9 @@ static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_col
                         sizeof *tile->parts);
 }
 
-/* Splits all pieces of a slot in a row under one lamp. Pieces at one height follow each other and share their intervals. */
-static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, const gnoi_column *column, int lamp)
+/* Splits all pieces of a slot in a row under one lamp. Pieces at one height follow each other and share their intervals. soft, a
+ * constant at each call: the lamp's shadows weaken with distance. */
+static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, const gnoi_column *column, int lamp, int soft)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
     uint32_t p = slot->chain;
@@ -120,10 +137,23 @@ static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, const 
             tile->failed = 1;
             return;
         }
-        for (; p != end; p = pieces[p].chain)
-            split_piece(tile, lamp, &pieces[p], line_offset(tile, row, pieces[p].line),
-                        tile->judging ? gnoi_tile_base_line(tile, row, pieces[p].line) : -1);
+        for (; p != end; p = pieces[p].chain) {
+            float dy = line_offset(tile, row, pieces[p].line);
+            int line = base_line_of(tile, row, pieces[p].line);
+            if (soft)
+                gnoi_tile_split_soft(tile, lamp, slot, &pieces[p], dy, line);
+            else
+                split_piece(tile, lamp, &pieces[p], dy, line);
+        }
     }
+}
+
+static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, const gnoi_column *column, int lamp)
+{
+    if (tile->job->lamps[lamp].softness > 0)
+        split_row(tile, row, slot, column, lamp, 1);
+    else
+        split_row(tile, row, slot, column, lamp, 0);
 }
 
 static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
@@ -131,7 +161,7 @@ static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
     cells_clear(&tile->lit[lamp], first, last);
     for (int k = 0; k < 3; k++)
         memset(tile->lit_colour[lamp][k] + first, 0, (size_t)(last - first + 1) * sizeof(float));
-    if (tile->veiled && tile->judging)
+    if (tile->tinted && tile->judging)
         gnoi_tinted_lines_clear(&tile->lit_veil[lamp], first, last);
 }
 
@@ -199,7 +229,7 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
             clear_lamp(tile, j, first, last);
     for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
-        int line = tile->judging ? gnoi_tile_base_line(tile, row, pieces[p].line) : -1;
+        int line = base_line_of(tile, row, pieces[p].line);
         cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE,
                   line_offset(tile, row, pieces[p].line), line);
         tile->spans++;
@@ -274,7 +304,7 @@ void gnoi_tile_row(gnoi_tile *tile, int row)
     if (tile->row_line[row] == tile->row_line[row + 1])
         return;
     if (!gnoi_reserve(tile->lines.context, (void **)&tile->touched, &tile->touched_capacity, tile->slot_count, sizeof *tile->touched) ||
-        (tile->veiled && !gnoi_tile_veil_ready(tile))) {
+        (tile->tinted && !gnoi_tile_veil_ready(tile))) {
         tile->failed = 1;
         return;
     }

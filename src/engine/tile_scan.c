@@ -383,5 +383,6 @@ void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count)
     }
     if (count > tile->opaque_count)
         finish_stacks(tile);
+    tile->tinted = tile->veiled || (tile->job->tinted && tile->judging);
     tile->failed |= tile->lines.failed;
 }

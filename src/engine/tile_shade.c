@@ -33,7 +33,7 @@ void gnoi_tile_flush(gnoi_tile *tile)
     gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
     for (int i = 0; i < b->count; i++) {
         float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]};
-        if (tile->veiled)
+        if (tile->tinted)
             gnoi_tile_add_shares(tile, b->tag[i], rgb, &tile->share_by_line[0][0][i], GNOI_BATCH);
         else
             add_colour(tile, b->tag[i], rgb, b->coverage[i], &tile->cover_by_line[0][i], GNOI_BATCH);
@@ -152,7 +152,7 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
         }
     }
     tile->shaded++;
-    if (tile->veiled) {
+    if (tile->tinted) {
         gnoi_tile_add_tinted(tile, row, column, cells, tint != NULL, rgb);
         return;
     }
@@ -247,7 +247,7 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     set_material(b, i, tone, coverage, tint);
     if (tone->textured)
         apply_texel(b, i, tile->texel);
-    if (tile->veiled)
+    if (tile->tinted)
         gnoi_tile_tint_sample(tile, i, column, cells, tint != NULL);
     b->coverage[i] = coverage;
     for (int l = 0; l < job->def.base_lines && tile->judging; l++)

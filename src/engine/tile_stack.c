@@ -77,7 +77,8 @@ void gnoi_tile_veil(gnoi_tile *tile, int row, const gnoi_slot *slot, int first, 
 
 void gnoi_tile_add_tinted_light(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float x0, float x1, const double light[3], int line)
 {
-    const float *tint = tile->stacks.tints[piece - tile->lines.pieces].rgb;
+    static const float clear_tint[3] = {1, 1, 1};
+    const float *tint = tile->veiled ? tile->stacks.tints[piece - tile->lines.pieces].rgb : clear_tint;
     double tinted[3] = {light[0] * (double)tint[0], light[1] * (double)tint[1], light[2] * (double)tint[2]};
     gnoi_tile_add_light(tile->lit_colour[lamp], x0, x1, tinted);
     if (line >= 0)
@@ -145,13 +146,13 @@ void gnoi_tile_add_shares(gnoi_tile *tile, uint32_t pixel, const float rgb[3], c
  * of the colour that each base line and channel has: share[(3 line + channel) stride]. */
 static void set_tint(const gnoi_tile *tile, int column, const gnoi_cells *cells, int lit, float tint[3], float *share, size_t stride)
 {
-    const gnoi_tinted_lines *by_line = lit ? &tile->lit_veil[tile->lit_lamp] : &tile->veil.by_line;
+    const gnoi_tinted_lines *by_line = lit ? &tile->lit_veil[tile->lit_lamp] : tile->veiled ? &tile->veil.by_line : NULL;
     int lines = tile->judging ? tile->job->def.base_lines : 0;
     float length = cells->length[column];
     for (int k = 0; k < 3; k++) {
         float sum = 0;
-        tint[k] = lit ? 1 : tile->veil.sum[k][column] / length;
-        for (int i = 0; i < lines; i++)
+        tint[k] = lit || !tile->veiled ? 1 : tile->veil.sum[k][column] / length;
+        for (int i = 0; i < lines && by_line; i++)
             sum += by_line->rgb[i][k][column];
         for (int i = 0; i < lines; i++)
             share[(size_t)(3 * i + k) * stride] = sum > 0 ? by_line->rgb[i][k][column] / sum : cells->by_line[i][column] / length;

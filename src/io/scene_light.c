@@ -14,7 +14,6 @@ static const char *const distances[] = {"light", "viewer", NULL}; /* by gno_ligh
 typedef struct light_entry {
     gno_light light;
     const char *name;
-    double softness;
 } light_entry;
 
 enum { NAME, TYPE, POSITION, DIRECTION, EDGE1, EDGE2, ANGLE, INTENSITY, FALLOFF, K, DISTANCE, SAMPLES, SOFTNESS, FIELDS };
@@ -37,7 +36,7 @@ static const gnoi_field fields[FIELDS] = {
     [K] = {.key = "k", .kind = GNOI_FIELD_FROM_0, .offset = AT(falloff_k)},
     [DISTANCE] = {.key = "distance", .kind = GNOI_FIELD_CHOICE, .offset = AT(distance_from_viewer), .choices = distances},
     [SAMPLES] = {.key = "samples", .kind = GNOI_FIELD_INTEGER, .offset = AT(samples), .low = 1, .high = MAX_SAMPLES},
-    [SOFTNESS] = {.key = "softness", .kind = GNOI_FIELD_FROM_0, .offset = offsetof(light_entry, softness)},
+    [SOFTNESS] = {.key = "softness", .kind = GNOI_FIELD_FROM_0, .offset = AT(softness)},
 };
 
 /* Which types have the keys that not all types have, and which of these they cannot do without. */
@@ -87,7 +86,6 @@ static gno_status read_light(gnoi_scene_reader *reader, const gnoi_yaml_node *no
     gno_status status = gnoi_read_fields(reader->yaml, node, fields, FIELDS, entry, seen);
     if (status == GNO_OK) status = check_uses(reader->yaml, node, &entry->light, seen);
     if (status != GNO_OK) return status;
-    if (entry->softness > 0) reader->undrawn |= GNOI_UNDRAWN_SOFTNESS;
     snprintf(numbered, sizeof numbered, "light%lu", index);
     status = gno_scene_add_light(reader->scene, entry->name ? entry->name : numbered, &entry->light, NULL);
     return gnoi_wrap(reader->yaml, node, status);

@@ -168,9 +168,9 @@ gno_status gnoi_read_materials(gnoi_scene_reader *reader, const gnoi_yaml_node *
 
 void gnoi_warn_undrawn(const gnoi_scene_reader *reader)
 {
-    static const char *const names[] = {"texture", "bump", "reflection", "ior", "softness"};
+    static const char *const names[] = {"texture", "bump", "reflection", "ior"};
     char text[1400] = "", list[128] = "";
-    for (int i = 0; i < 5; i++) {
+    for (int i = 0; i < 4; i++) {
         if (!(reader->undrawn >> i & 1)) continue;
         size_t used = strlen(list);
         snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "", names[i]);

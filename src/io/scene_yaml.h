@@ -31,8 +31,7 @@ enum {
     GNOI_UNDRAWN_TEXTURE = 1,
     GNOI_UNDRAWN_BUMP = 2,
     GNOI_UNDRAWN_REFLECTION = 4,
-    GNOI_UNDRAWN_IOR = 8,
-    GNOI_UNDRAWN_SOFTNESS = 16
+    GNOI_UNDRAWN_IOR = 8
 };
 
 typedef struct gnoi_scene_reader {

@@ -48,6 +48,7 @@ gno_light gno_light_default(void)
     light.falloff_k = 1;
     light.distance_from_viewer = 1;
     light.samples = 4;
+    light.softness = 0;
     return light;
 }
 

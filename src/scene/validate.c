@@ -126,6 +126,9 @@ gno_status gnoi_check_light(gno_context *context, const gno_light *light)
     if (status == GNO_OK) {
         status = check_range(context, what, "falloff_k", light->falloff_k, 0, DBL_MAX);
     }
+    if (status == GNO_OK) {
+        status = check_range(context, what, "softness", light->softness, 0, DBL_MAX);
+    }
     return status == GNO_OK ? check_light_shape(context, light) : status;
 }
 

@@ -51,7 +51,9 @@ static void set_halved(const gno_scene *scene, const gnoi_view *view, gnoi_shado
             continue;
         for (size_t i = 0; i < cache->lamp_count; i++) {
             const gnoi_lamp *lamp = &cache->lamps[i];
-            cache->halved[i * cache->solid_count + k] = (unsigned char)(lamp->directional || gnoi_solid_outside(scene, k, lamp->position));
+            /* where shadows weaken with distance each of the two sides of a solid counts for itself */
+            if (!(lamp->softness > 0))
+                cache->halved[i * cache->solid_count + k] = (unsigned char)(lamp->directional || gnoi_solid_outside(scene, k, lamp->position));
         }
     }
 }

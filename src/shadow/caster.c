@@ -303,7 +303,7 @@ gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t ind
     if (caster->ring_count == 1) {
         point2 points[4];
         relation how = relate_shadow(r.now, r.count, points, region_points(p, view, points));
-        if (how == ALL_OUTSIDE || (how == ALL_INSIDE && caster->opaque)) {
+        if (how == ALL_OUTSIDE || (how == ALL_INSIDE && caster->opaque && !(p->lamp->softness > 0))) {
             columns->edge_count = first_edge;
             return how == ALL_OUTSIDE ? GNOI_FOUND_NOTHING : GNOI_FOUND_ALL;
         }
@@ -315,6 +315,7 @@ gnoi_found gnoi_pair_try(const gnoi_pair *p, const gnoi_view *view, uint32_t ind
     c->y1 = -lowered(-e.y1);
     c->edge = (uint32_t)first_edge;
     c->edge_count = (uint32_t)(columns->edge_count - first_edge);
+    c->poly = index;
     c->material = caster->material;
     c->area = caster->ring_count == 1 ? (float)ring_area(&r) : 0;
     return GNOI_FOUND_PART;

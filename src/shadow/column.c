@@ -387,5 +387,6 @@ void gnoi_columns_free(gnoi_columns *columns)
     gnoi_free(columns->context, columns->rows.items, columns->rows.capacity, sizeof *columns->rows.items);
     gnoi_free(columns->context, columns->points, columns->point_capacity, sizeof *columns->points);
     gnoi_free(columns->context, columns->intervals, columns->interval_capacity, sizeof *columns->intervals);
+    gnoi_free(columns->context, columns->sources, columns->source_capacity, sizeof *columns->sources);
     gnoi_free(columns->context, columns->crossings, columns->crossing_capacity, sizeof *columns->crossings);
 }

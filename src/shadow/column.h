@@ -28,6 +28,7 @@ typedef enum gnoi_column_state {
 typedef struct gnoi_caster {
     float x0, y0, x1, y1; /* bounds in the picture, widened against rounding */
     uint32_t edge, edge_count;
+    uint32_t poly;     /* the prepared polygon that throws it */
     uint32_t material; /* for its transmission */
     float area;        /* of the shadow polygon, 0 where it has holes */
 } gnoi_caster;
@@ -73,6 +74,9 @@ typedef struct gnoi_columns {
     gnoi_hpoint *points;             /* two halves: before and after a cut */
     size_t interval_count, interval_capacity;
     gno_shadow_interval *intervals;  /* of the line asked for last */
+    size_t source_capacity;
+    uint32_t *sources;               /* beside them: the polygon that throws the shadow, GNOI_NONE for the dark outside of a cone;
+                                        only for a lamp whose shadows weaken with distance */
     size_t crossing_capacity;
     double *crossings;
     struct gnoi_request *requests;   /* request_capacity of them once made; request_count wait */
@@ -107,6 +111,11 @@ int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi
 int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                           const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
                           gnoi_columns *columns);
+
+/* What a caster's shadow leaves of a lamp's light, by channel, at the receiver's point seen at (x,y), where the lamp's shadows weaken with
+ * distance: 1 - s / (1 + d/D), with s what the caster keeps back and d its distance from the point along the ray. */
+void gnoi_caster_light(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver, uint32_t caster,
+                       double x, double y, double light[3]);
 
 /* Makes the store empty for the next tile; keeps its memory. */
 void gnoi_columns_reset(gnoi_columns *columns);

@@ -24,6 +24,7 @@ typedef struct gnoi_lamp {
     gno_falloff falloff;
     double falloff_k;
     int distance_from_viewer;
+    double softness; /* length with which shadows weaken, 0: they do not */
 } gnoi_lamp;
 
 /* Positive on the lit side of the plane n.P + d = 0: the lamp's height over it (directional: the cosine). */

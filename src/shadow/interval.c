@@ -112,13 +112,44 @@ static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double
     return 1;
 }
 
-int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
-                          const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
-                          gnoi_columns *columns)
+/* Names the polygon behind the intervals from `first` on. */
+static int note_source(gnoi_columns *columns, size_t first, uint32_t poly)
+{
+    if (!gnoi_reserve(columns->context, (void **)&columns->sources, &columns->source_capacity, columns->interval_count,
+                      sizeof *columns->sources))
+        return 0;
+    for (size_t i = first; i < columns->interval_count; i++)
+        columns->sources[i] = poly;
+    return 1;
+}
+
+/* Distance from the receiver's point p to the caster's plane along the ray to the lamp; 0 where rounding puts it behind. */
+static double caster_distance(const gnoi_lamp *lamp, const gnoi_poly *caster, vec3 p)
+{
+    vec3 to = lamp->directional ? lamp->to_light : v3_sub(lamp->position, p), n = v3_from(caster->n);
+    double along = v3_dot(n, to), t = along != 0 ? -(v3_dot(n, p) + caster->d) / along : 0;
+    return t > 0 ? t * v3_length(to) : 0;
+}
+
+void gnoi_caster_light(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver, uint32_t caster,
+                       double x, double y, double light[3])
+{
+    const gnoi_poly *poly = &scene->prepared.polys[caster];
+    const double *t = scene->materials[poly->material].transmission;
+    double z = gnoi_plane_at(&receiver->nearness, x, y);
+    double d = caster_distance(lamp, poly, gnoi_view_point(view, x, y, z));
+    for (int k = 0; k < 3; k++)
+        light[k] = 1 - (1 - t[k]) / (1 + d / lamp->softness);
+}
+
+/* `sources` is a constant at each call, so that the usual lamp does not ask for each caster. */
+static inline int collect(const gno_scene *scene, const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
+                          int sources, gnoi_columns *columns)
 {
     float fy = (float)y, fa = (float)xa, fb = (float)xb;
     uint32_t count = column->caster_count;
     const uint32_t *listed = NULL;
+    size_t before;
     if (column->rows != GNOI_NONE) {
         const uint32_t *start = columns->rows.items + column->rows;
         int row = gnoi_region_row(receiver, y);
@@ -134,9 +165,26 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
             !gnoi_reserve(columns->context, (void **)&columns->crossings, &columns->crossing_capacity, c->edge_count,
                           sizeof *columns->crossings))
             return 0;
-        if (!caster_intervals(scene, c, y, xa, xb, columns))
+        before = columns->interval_count;
+        if (!caster_intervals(scene, c, y, xa, xb, columns) || (sources && !note_source(columns, before, c->poly)))
             return 0;
     }
+    return 1;
+}
+
+int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                          const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
+                          gnoi_columns *columns)
+{
+    size_t before;
+    if (lamp->softness > 0) { /* nothing is halved, there is no sheet */
+        if (!collect(scene, receiver, column, y, xa, xb, 1, columns))
+            return 0;
+        before = columns->interval_count;
+        return (!lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns)) && note_source(columns, before, GNOI_NONE);
+    }
+    if (!collect(scene, receiver, column, y, xa, xb, 0, columns))
+        return 0;
     if (column->sheet) {
         gnoi_pair p;
         if (gnoi_pair_make(&p, scene, view, lamp, receiver) && !gnoi_sheet_intervals(&p, view, casters, column, y, xa, xb, columns))

@@ -22,6 +22,7 @@ static gnoi_lamp lamp_from(const gno_light *light)
     lamp.falloff = light->falloff;
     lamp.falloff_k = light->falloff_k;
     lamp.distance_from_viewer = light->distance_from_viewer;
+    lamp.softness = light->softness;
     return lamp;
 }
 

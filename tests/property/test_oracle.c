@@ -169,7 +169,7 @@ static int judge_scene(gno_scene *scene, const char *name, unsigned seed, const 
     assert_true(o && j.seen && j.engine);
     assert_int_equal(gno_scene_material(scene, 1, &first), GNO_OK);
     j.o = o;
-    j.constant = first.shading == GNO_SHADING_CONSTANT && strcmp(name, "blob") != 0 && strcmp(name, "glass") != 0 && strncmp(name, "panes", 5) != 0;
+    j.constant = first.shading == GNO_SHADING_CONSTANT && strcmp(name, "blob") != 0 && strcmp(name, "glass") != 0 && strncmp(name, "panes", 5) != 0 && strncmp(name, "soft", 4) != 0;
     for (size_t i = 0; i < PIXELS * 3; i++) j.engine[i] = NAN; /* every pixel has to be written */
     assert_int_equal(gno_render(scene, def, j.engine, NULL), GNO_OK);
     oracle_picture(o, RAYS, 1, j.seen);
@@ -242,6 +242,7 @@ static void test_details(void **state) { (void)state; judge_kind(SCENE_DETAILS, 
 static void test_room(void **state) { (void)state; judge_kind(SCENE_ROOM, 6); }
 static void test_glass(void **state) { (void)state; judge_kind(SCENE_GLASS, 8); }
 static void test_panes(void **state) { (void)state; judge_kind(SCENE_PANES, 8); }
+static void test_soft(void **state) { (void)state; judge_kind(SCENE_SOFT, 8); }
 static void test_around(void **state) { (void)state; judge_kind(SCENE_AROUND, 6); }
 static void test_blob(void **state) { (void)state; judge_kind(SCENE_BLOB, 3); }
 static void test_lattice(void **state) { (void)state; judge_kind(SCENE_LATTICE, 8); }
@@ -275,7 +276,7 @@ static void test_default_settings(void **state)
     gno_render_def d = gno_render_def_default();
     int failed = 0;
     for (int kind = 0; kind < SCENE_BLOB; kind++) failed += judge_seed((scene_kind)kind, 1000, &here, &d, 0);
-    failed += judge_seed(SCENE_PANES, 1000, &here, &d, 0);
+    failed += judge_seed(SCENE_PANES, 1000, &here, &d, 0) + judge_seed(SCENE_SOFT, 1000, &here, &d, 0);
     assert_int_equal(failed, 0);
 }
 
@@ -443,6 +444,7 @@ int main(void)
         cmocka_unit_test(test_room),
         cmocka_unit_test(test_glass),
         cmocka_unit_test(test_panes),
+        cmocka_unit_test(test_soft),
         cmocka_unit_test(test_around),
         cmocka_unit_test(test_blob),
         cmocka_unit_test(test_lattice),

@@ -262,6 +262,8 @@ void oracle_destroy(oracle *o)
 size_t oracle_polygons(const oracle *o) { return o->face_count; }
 size_t oracle_lights(const oracle *o) { return o->lamp_count; }
 
+static unsigned long mix(unsigned long hash, unsigned long value) { return ((hash ^ value) * 1099511UL + (hash >> 7)) & 0xffffffffUL; }
+
 /* ---- rays ------------------------------------------------------------------------------------------------------ */
 
 /* Is the point of the face's plane inside: does a line from it cross the borders of all its rings an odd number of times? */
@@ -343,19 +345,28 @@ static int lies_on(const oracle *o, const face *a, const face *plane)
     return 1;
 }
 
-/* What passes from the lamp to a point of the receiver: the product of the transmissions of everything between. */
-static void passes(const oracle *o, const lamp *l, const face *receiver, const double point[3], double light[3])
+/* What passes from the lamp to a point of the receiver: the product over everything between of what each lets through, its
+ * transmission or what its shadow leaves at its distance; returns a hash of who is between. */
+static unsigned long passes(const oracle *o, const lamp *l, const face *receiver, const double point[3], double light[3])
 {
-    double to[3], at[3];
+    double to[3], at[3], length;
+    unsigned long state = 1;
     int far = l->l.type == GNO_LIGHT_DIRECTIONAL;
     for (int k = 0; k < 3; k++) to[k] = far ? -l->direction[k] : l->position[k] - point[k];
     light[0] = light[1] = light[2] = 1;
+    length = sqrt(dot(to, to));
     for (size_t i = 0; i < o->face_count; i++) {
         const face *a = &o->faces[i];
-        if (a == receiver || meet(a, point, to, far ? INFINITY : BEFORE_LAMP, at) < 0 || lies_on(o, a, receiver) ||
+        double share;
+        if (a == receiver || (share = meet(a, point, to, far ? INFINITY : BEFORE_LAMP, at)) < 0 || lies_on(o, a, receiver) ||
             lies_on(o, receiver, a)) continue;
-        for (int k = 0; k < 3; k++) light[k] *= a->m.transmission[k];
+        for (int k = 0; k < 3; k++) {
+            double t = a->m.transmission[k], d = share * length;
+            light[k] *= l->l.softness > 0 ? 1 - (1 - t) / (1 + d / l->l.softness) : t;
+        }
+        state = mix(state, i);
     }
+    return state;
 }
 
 /* ---- light ------------------------------------------------------------------------------------------------------ */
@@ -456,8 +467,6 @@ static void shade(const oracle *o, const lamp *l, const face *a, const double po
     }
 }
 
-static unsigned long mix(unsigned long hash, unsigned long value) { return ((hash ^ value) * 1099511UL + (hash >> 7)) & 0xffffffffUL; }
-
 /* Adds all lamps' light on a face's point, times what the faces before it let through, to the sample's colour, and their
  * shadow states to its hash. */
 static void light_point(const oracle *o, const face *a, const double point[3], const double direction[3], const double through[3],
@@ -468,16 +477,18 @@ static void light_point(const oracle *o, const face *a, const double point[3], c
     for (int k = 0; k < 3; k++) plane[k] = side * a->n[k];
     for (size_t i = 0; i < o->lamp_count; i++) {
         const lamp *l = &o->lamps[i];
+        unsigned long casters = 0;
         double to[3], light[3] = {0, 0, 0}, colour[3];
         int far = l->l.type == GNO_LIGHT_DIRECTIONAL;
         for (int k = 0; k < 3; k++) to[k] = far ? -l->direction[k] : l->position[k] - point[k];
         unit(to);
         /* light from behind the plane is the polygon's own shadow */
-        if (dot(plane, to) > GRAZING && -dot(to, l->direction) >= l->cone) passes(o, l, a, point, light);
+        if (dot(plane, to) > GRAZING && -dot(to, l->direction) >= l->cone) casters = passes(o, l, a, point, light);
         shade(o, l, a, point, plane, colour);
+        if (l->l.softness > 0) s->state = mix(s->state, casters);
         for (int k = 0; k < 3; k++) {
             s->rgb[k] += through[k] * light[k] * colour[k];
-            s->state = mix(s->state, (unsigned long)(light[k] * 1e6 + 0.5));
+            if (!(l->l.softness > 0)) s->state = mix(s->state, (unsigned long)(light[k] * 1e6 + 0.5));
         }
     }
 }

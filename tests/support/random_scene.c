@@ -65,7 +65,7 @@ static void random_plane(maker *m, double u[3], double v[3])
 
 const char *scene_kind_name(scene_kind kind)
 {
-    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "solids", "blob", "panes"};
+    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "solids", "blob", "panes", "soft"};
     return names[kind];
 }
 
@@ -476,6 +476,7 @@ static void add_light(maker *m, scene_kind kind, double share)
         l.falloff = GNO_FALLOFF_INVERSE_SQUARE;
         for (int k = 0; k < 3; k++) l.intensity[k] *= 10;
     }
+    if (kind == SCENE_SOFT || (kind == SCENE_PANES && pick(m, 2))) l.softness = between(m, 0.2, 3);
     keep(m, gno_scene_add_light(m->scene, NULL, &l, NULL) == GNO_OK);
 }
 
@@ -543,6 +544,7 @@ gno_scene *random_scene(gno_context *context, scene_kind kind, unsigned seed, in
     case SCENE_SOLIDS: solids(&m); break;
     case SCENE_TORCH: floor_at(&m, -1.5, 4); soup(&m, 12, 1.2, 1.2); boxes(&m, 2, 1.5, -1.5); break;
     case SCENE_PANES: panes(&m); break;
+    case SCENE_SOFT: floor_at(&m, -0.5, 4); boxes(&m, 3, 1.6, -0.5); soup(&m, 5, 1.2, 0.9); glass(&m); break;
     case SCENE_AROUND: soup(&m, 30, 1.5, 1.8); break;
     default: blob(&m); break;
     }

@@ -19,6 +19,7 @@ typedef enum scene_kind {
     SCENE_SOLIDS,  /* closed bodies in and through each other, wound both ways, some open to the eye from behind */
     SCENE_BLOB,    /* a closed smooth mesh on a plane, Gouraud or Phong */
     SCENE_PANES,   /* stacks of transparent polygons, lying on each other and through each other and solid things */
+    SCENE_SOFT,    /* boxes, triangles and glass under lights whose shadows weaken with distance */
     SCENE_KINDS
 } scene_kind;
 
