@@ -7,6 +7,7 @@
 #define GNOMON_GNOMON_IO_H
 
 #include <gnomon/gnomon.h>
+#include <gnomon/gnomon_matrix.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -49,6 +50,28 @@ GNO_API gno_status gno_picture_write(gno_context *context, const char *path, con
  * Layers are 32 bits whatever the depth, and without exposure. Errors: as gno_picture_write; ARGUMENT (not an .exr). */
 GNO_API gno_status gno_picture_write_layers(const gno_scene *scene, const char *path, const gno_picture_def *def, const float *rgb,
                                             const gno_layers *layers);
+
+/* Shadow matrices (gnomon_matrix.h). Matrix Market (.mtx, text): coordinate, pattern, general, polygons counted from 1, columns in
+ * order. CSV: a line "caster,receiver", then a line for each one, polygons counted from 0. PNG: a picture, rows (casters) downwards,
+ * columns to the right, own shadow red; large matrices are gathered into cells, darker where there are more ones. */
+typedef enum gno_matrix_format { GNO_MATRIX_AUTO = 0, GNO_MATRIX_MTX, GNO_MATRIX_CSV, GNO_MATRIX_PNG } gno_matrix_format;
+
+#define GNO_MATRIX_MAX_SPY 4096
+
+typedef struct gno_matrix_file_def {
+    gno_matrix_format format; /* AUTO: by the path's extension; "-" (standard output) is then MTX */
+    const char *note;         /* MTX: one more comment line; NULL: none */
+    int spy_side;             /* PNG: largest side in pixels, 1 .. GNO_MATRIX_MAX_SPY; default 1024 */
+} gno_matrix_file_def;
+
+GNO_API gno_matrix_file_def gno_matrix_file_def_default(void);
+
+/* The file appears whole or not at all. def may be NULL. Errors: MEMORY, ARGUMENT (unknown extension), FILE. */
+GNO_API gno_status gno_matrix_save(gno_matrix *matrix, const char *path, const gno_matrix_file_def *def);
+
+/* Reads a Matrix Market file: coordinate, pattern, general, square; entries in any order. What it does not hold is not known of
+ * the columns afterwards (which were covered, which polygons have no area). Errors: MEMORY, FILE, INPUT, LIMIT; messages name file and line. */
+GNO_API gno_status gno_matrix_load(gno_context *context, const char *path, gno_matrix **matrix);
 
 #ifdef __cplusplus
 }

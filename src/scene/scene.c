@@ -156,6 +156,7 @@ void gnoi_scene_changed(gno_scene *scene)
         scene->free_shadows(scene->context, scene->shadows);
     }
     scene->shadows = NULL;
+    scene->changes++;
     gnoi_prepared_free(scene->context, &scene->prepared);
 }
 

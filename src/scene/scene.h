@@ -116,6 +116,7 @@ struct gno_scene {
     gno_camera camera;
     gno_image_def image;
     double ambient[3];
+    unsigned long changes; /* how often gnoi_scene_changed was called */
     gnoi_prepared prepared;
     gnoi_shadow_cache *shadows; /* kept from view to view; NULL until a view needs it */
     void (*free_shadows)(gno_context *context, gnoi_shadow_cache *shadows); /* set by whoever fills `shadows` */

@@ -4,7 +4,6 @@
 
 /* A point light's single plane serves while the scene stays within this slope from its axis. */
 #define CONE_SLOPE 2.5
-#define FACE_STEP 4.0
 #define SLACK 2e-6
 /* A cut turns n points into at most 3n/2: 8, 12, 18, 27, 40. */
 #define CUT_POINTS 40
@@ -54,7 +53,7 @@ gnoi_frame gnoi_frame_make(const gnoi_lamp *lamp, const double lower[3], const d
     if (within_cone(&frame, lower, upper))
         return frame;
     frame.faces = 6;
-    frame.slack = SLACK * FACE_STEP;
+    frame.slack = SLACK * GNOI_FACE_STEP;
     return frame;
 }
 
@@ -177,7 +176,7 @@ static int locate_on_cube(const gnoi_frame *frame, const vec3 *points, int count
         if (!(q.z > 0) || fabs(q.x) > q.z || fabs(q.y) > q.z)
             return 0;
         located[i].q = 1 / q.z;
-        located[i].u = q.x * located[i].q + FACE_STEP * face;
+        located[i].u = q.x * located[i].q + GNOI_FACE_STEP * face;
         located[i].v = q.y * located[i].q;
     }
     return 1;
@@ -214,9 +213,9 @@ static int face_box(const gnoi_frame *frame, const vec3 *relative, int count, in
     for (int i = 0; i < n; i++) {
         vec3 q = ring[0][i];
         if (q.z > 0)
-            box_add(box, q.x / q.z + FACE_STEP * face, q.y / q.z, q.z);
+            box_add(box, q.x / q.z + GNOI_FACE_STEP * face, q.y / q.z, q.z);
         else
-            box_add(box, FACE_STEP * face, 0, 0);
+            box_add(box, GNOI_FACE_STEP * face, 0, 0);
     }
     box_grow(box, frame);
     return 1;
@@ -244,4 +243,11 @@ int gnoi_frame_boxes(const gnoi_frame *frame, const vec3 *points, int count, gno
     for (int face = 0; face < frame->faces && frame->faces == 6; face++)
         n += face_box(frame, relative, count, face, &boxes[n]);
     return n;
+}
+
+int gnoi_frame_everywhere(gnoi_lbox *box)
+{
+    box->u0 = box->v0 = box->z0 = -FLT_MAX;
+    box->u1 = box->v1 = box->z1 = FLT_MAX;
+    return 1;
 }

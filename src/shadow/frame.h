@@ -3,7 +3,7 @@
  * Place in the data flow: lights -> gnoi_lamp + gnoi_frame -> boxes of polygons on the light's plane -> tree, columns.
  * A directional light projects in parallel onto one plane; a point light gnomonically, onto one plane when the whole
  * scene lies well within one cone before it, onto the six faces of a cube otherwise. Straight stays straight, so the
- * box of a polygon's projected corners bounds the polygon. Faces stand side by side in u, FACE_STEP apart.
+ * box of a polygon's projected corners bounds the polygon. Faces stand side by side in u, GNOI_FACE_STEP apart.
  * Invariant: a box contains the exact projection (corners are rounded outwards).
  */
 #ifndef GNOI_SHADOW_FRAME_H
@@ -38,6 +38,9 @@ static inline double gnoi_lamp_side(const gnoi_lamp *lamp, const double n[3], do
 typedef struct gnoi_lbox {
     float u0, u1, v0, v1, z0, z1;
 } gnoi_lbox;
+
+/* Face k of a six-face frame covers u = k GNOI_FACE_STEP - 1 .. k GNOI_FACE_STEP + 1. */
+#define GNOI_FACE_STEP 4.0
 
 typedef struct gnoi_frame {
     int parallel;
@@ -75,5 +78,8 @@ void gnoi_frame_box(const gnoi_frame *frame, const gnoi_lpoint *located, int cou
 /* Boxes of the ring of `count` points (at most GNOI_FRAME_POINTS), one for each face it reaches. Returns their number. */
 #define GNOI_FRAME_POINTS 8
 int gnoi_frame_boxes(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lbox boxes[6]);
+
+/* One box that meets all others, for what rounding leaves no box at all. Returns 1. */
+int gnoi_frame_everywhere(gnoi_lbox *box);
 
 #endif

@@ -3,7 +3,7 @@
 
 #define PI 3.14159265358979323846
 
-static size_t lamps_of(const gno_light *light)
+size_t gnoi_lamp_count(const gno_light *light)
 {
     return light->type == GNO_LIGHT_AREA ? (size_t)light->samples * (size_t)light->samples : 1;
 }
@@ -41,11 +41,19 @@ static void add_area(const gno_light *light, gnoi_lamp *lamps)
         }
 }
 
+void gnoi_lamps_of(const gno_light *light, gnoi_lamp *lamps)
+{
+    if (light->type == GNO_LIGHT_AREA)
+        add_area(light, lamps);
+    else
+        *lamps = lamp_from(light);
+}
+
 size_t gnoi_lamps_count(const gno_scene *scene)
 {
     size_t count = 0;
     for (size_t i = 0; i < scene->light_count; i++)
-        count += lamps_of(&scene->lights[i].light);
+        count += gnoi_lamp_count(&scene->lights[i].light);
     return count;
 }
 
@@ -53,10 +61,7 @@ void gnoi_lamps_fill(const gno_scene *scene, gnoi_lamp *lamps)
 {
     for (size_t i = 0; i < scene->light_count; i++) {
         const gno_light *light = &scene->lights[i].light;
-        if (light->type == GNO_LIGHT_AREA)
-            add_area(light, lamps);
-        else
-            *lamps = lamp_from(light);
-        lamps += lamps_of(light);
+        gnoi_lamps_of(light, lamps);
+        lamps += gnoi_lamp_count(light);
     }
 }

@@ -11,6 +11,10 @@
 
 size_t gnoi_lamps_count(const gno_scene *scene);
 
+/* Of one light alone. lamps: room for gnoi_lamp_count. */
+size_t gnoi_lamp_count(const gno_light *light);
+void gnoi_lamps_of(const gno_light *light, gnoi_lamp *lamps);
+
 /* lamps: room for gnoi_lamps_count. */
 void gnoi_lamps_fill(const gno_scene *scene, gnoi_lamp *lamps);
 

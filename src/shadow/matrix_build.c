@@ -1,0 +1,246 @@
+/* matrix_build.c -- all columns of a light's shadow matrix.
+ *
+ *   pieces of PIECE packets, any thread -> findings of each piece -> columns counted by scene polygon -> offsets -> casters moved to
+ *   their places -> columns with several parts sorted again and closed up
+ */
+#include "base/parallel.h"
+#include "shadow/matrix.h"
+
+#include <string.h>
+
+#define PIECE 64 /* packets */
+
+typedef struct job {
+    const gnoi_search *search;
+    gno_matrix *matrix;
+    size_t piece_count;
+    gnoi_findings *pieces;
+    size_t worker_count;
+    gnoi_packet_list *lists; /* one for each worker */
+    int shared; /* some scene polygon has several columns */
+} job;
+
+/* ---- finding ------------------------------------------------------------------------------------------------------ */
+
+/* Casters ascend within each column. */
+static void sort_columns(gnoi_findings *f)
+{
+    size_t from = 0, to = 0;
+    for (size_t i = 0; i < f->column_count; i++) {
+        size_t count = f->columns[i].count, left = gnoi_sort_casters(f->casters + from, count);
+        memmove(f->casters + to, f->casters + from, left * sizeof *f->casters);
+        f->columns[i].count = (uint32_t)left;
+        from += count;
+        to += left;
+    }
+    f->caster_count = to;
+}
+
+/* Gives back what growing left over, so that all pieces together hold little more than the matrix. */
+static void trim(gnoi_findings *f)
+{
+    uint32_t *less;
+    if (f->caster_count == f->caster_capacity || f->caster_count == 0)
+        return;
+    less = gnoi_realloc(f->context, f->casters, f->caster_capacity, f->caster_count, sizeof *less);
+    if (less) {
+        f->casters = less;
+        f->caster_capacity = f->caster_count;
+    }
+}
+
+static gno_status find_piece(void *user, int worker, size_t piece)
+{
+    job *j = user;
+    const gnoi_packets *packets = &j->search->packets;
+    gnoi_findings *f = &j->pieces[piece];
+    size_t end = (piece + 1) * PIECE;
+    int good = 1;
+    f->context = j->search->scene->context;
+    f->list = j->lists[worker];
+    end = end < packets->packet_count ? end : packets->packet_count;
+    for (size_t i = piece * PIECE; i < end && good; i++)
+        good = gnoi_search_packet(j->search, i, f);
+    j->lists[worker] = f->list;
+    memset(&f->list, 0, sizeof f->list);
+    if (!good)
+        return GNO_ERROR_MEMORY;
+    sort_columns(f);
+    trim(f);
+    return GNO_OK;
+}
+
+/* ---- putting together ----------------------------------------------------------------------------------------------- */
+
+/* matrix->start[s + 1]: ones of scene polygon s so far; its shade. */
+static void count_columns(job *j)
+{
+    const gnoi_poly *polys = j->search->scene->prepared.polys;
+    gno_matrix *m = j->matrix;
+    for (size_t i = 0; i < j->piece_count; i++)
+        for (size_t k = 0; k < j->pieces[i].column_count; k++) {
+            const gnoi_found_column *c = &j->pieces[i].columns[k];
+            uint32_t s = polys[c->poly].source;
+            if (m->shade[s] == GNO_SHADE_NO_AREA) {
+                m->shade[s] = (unsigned char)c->shade;
+            } else {
+                /* Parts of a polygon that is not planar are other prepared polygons; each then stands for a part only. */
+                int same = !j->search->scene->prepared.problems.non_planar;
+                m->shade[s] = (unsigned char)gnoi_shade_join((gno_shade)m->shade[s], c->shade, same);
+                j->shared = 1;
+            }
+            m->start[s + 1] += c->count;
+        }
+    for (size_t s = 0; s < m->size; s++)
+        m->start[s + 1] += m->start[s];
+}
+
+/* After this start[s] is where column s ends. */
+static void move_casters(job *j)
+{
+    const gnoi_poly *polys = j->search->scene->prepared.polys;
+    gno_matrix *m = j->matrix;
+    for (size_t i = 0; i < j->piece_count; i++) {
+        gnoi_findings *f = &j->pieces[i];
+        const uint32_t *from = f->casters;
+        for (size_t k = 0; k < f->column_count; k++) {
+            size_t *at = &m->start[polys[f->columns[k].poly].source], count = f->columns[k].count;
+            for (size_t n = 0; n < count; n++)
+                m->casters[*at + n] = from[n];
+            from += count;
+            *at += count;
+        }
+        gnoi_findings_free(f);
+    }
+}
+
+static void restore_starts(gno_matrix *m)
+{
+    for (size_t s = m->size; s > 0; s--)
+        m->start[s] = m->start[s - 1];
+    m->start[0] = 0;
+}
+
+/* Sorts columns that came in several parts, and closes the gaps that repeats leave. */
+static void close_up(gno_matrix *m)
+{
+    size_t to = 0, from = 0;
+    for (size_t s = 0; s < m->size; s++) {
+        size_t count = m->start[s + 1] - from, left = gnoi_sort_casters(m->casters + from, count);
+        memmove(m->casters + to, m->casters + from, left * sizeof *m->casters);
+        from = m->start[s + 1];
+        m->start[s] = to;
+        to += left;
+    }
+    m->start[m->size] = to;
+}
+
+static gno_status assemble(job *j)
+{
+    gno_matrix *m = j->matrix;
+    m->start = gnoi_calloc(m->context, m->size + 1, sizeof *m->start);
+    m->shade = gnoi_malloc(m->context, m->size, sizeof *m->shade);
+    if (!m->start || !m->shade)
+        return GNO_ERROR_MEMORY;
+    memset(m->shade, GNO_SHADE_NO_AREA, m->size);
+    count_columns(j);
+    m->caster_capacity = m->start[m->size];
+    m->casters = gnoi_malloc(m->context, m->caster_capacity, sizeof *m->casters);
+    if (!m->casters)
+        return GNO_ERROR_MEMORY;
+    move_casters(j);
+    restore_starts(m);
+    if (j->shared)
+        close_up(m);
+    return GNO_OK;
+}
+
+/* ---- building ----------------------------------------------------------------------------------------------------- */
+
+static gno_status find_columns(job *j, int threads)
+{
+    gno_context *context = j->search->scene->context;
+    gno_status status = GNO_ERROR_MEMORY;
+    j->worker_count = (size_t)gnoi_thread_count(threads);
+    j->piece_count = (j->search->packets.packet_count + PIECE - 1) / PIECE;
+    j->pieces = gnoi_calloc(context, j->piece_count, sizeof *j->pieces);
+    j->lists = gnoi_calloc(context, j->worker_count, sizeof *j->lists);
+    if (j->pieces && j->lists)
+        status = gnoi_parallel(context, threads, j->piece_count, "shadow matrix", find_piece, j);
+    for (size_t i = 0; j->lists && i < j->worker_count; i++)
+        gnoi_free(context, j->lists[i].items, j->lists[i].capacity, sizeof *j->lists[i].items);
+    gnoi_free(context, j->lists, j->worker_count, sizeof *j->lists);
+    return status;
+}
+
+gno_status gnoi_matrix_fill(gno_scene *scene, const gnoi_lamp *lamp, int threads, gno_matrix *matrix)
+{
+    gnoi_search search;
+    gno_status status = gnoi_search_make(scene, lamp, threads, &search);
+    job j;
+    if (status)
+        return status;
+    memset(&j, 0, sizeof j);
+    j.search = &search;
+    j.matrix = matrix;
+    status = find_columns(&j, threads);
+    gnoi_packets_free(scene->context, &search.packets); /* before the columns are copied: it is the larger */
+    if (!status)
+        status = assemble(&j);
+    for (size_t i = 0; j.pieces && i < j.piece_count; i++)
+        gnoi_findings_free(&j.pieces[i]);
+    gnoi_free(scene->context, j.pieces, j.piece_count, sizeof *j.pieces);
+    gnoi_search_free(&search);
+    return status;
+}
+
+gno_status gnoi_matrix_unite(gno_matrix *matrix, const gno_matrix *other)
+{
+    size_t *start = gnoi_malloc(matrix->context, matrix->size + 1, sizeof *start);
+    size_t room = matrix->start[matrix->size] + other->start[other->size], to = 0;
+    uint32_t *casters = gnoi_malloc(matrix->context, room, sizeof *casters);
+    if (!start || !casters) {
+        gnoi_free(matrix->context, start, matrix->size + 1, sizeof *start);
+        gnoi_free(matrix->context, casters, room, sizeof *casters);
+        return GNO_ERROR_MEMORY;
+    }
+    for (size_t s = 0; s < matrix->size; s++) {
+        size_t a = matrix->start[s], b = other->start[s], a1 = matrix->start[s + 1], b1 = other->start[s + 1];
+        start[s] = to;
+        while (a < a1 || b < b1) {
+            uint32_t x = a < a1 ? matrix->casters[a] : GNOI_NONE, y = b < b1 ? other->casters[b] : GNOI_NONE;
+            casters[to++] = x < y ? x : y;
+            a += x <= y;
+            b += y <= x;
+        }
+        matrix->shade[s] = (unsigned char)gnoi_shade_join((gno_shade)matrix->shade[s], (gno_shade)other->shade[s], 0);
+    }
+    start[matrix->size] = to;
+    gnoi_free(matrix->context, matrix->start, matrix->size + 1, sizeof *matrix->start);
+    gnoi_free(matrix->context, matrix->casters, matrix->caster_capacity, sizeof *matrix->casters);
+    matrix->start = start;
+    matrix->casters = casters;
+    matrix->caster_capacity = room;
+    return GNO_OK;
+}
+
+int gnoi_polys_by_source(const gno_scene *scene, uint32_t **start, uint32_t **polys)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    size_t size = scene->polygon_count;
+    *start = gnoi_calloc(scene->context, size + 1, sizeof **start);
+    *polys = gnoi_malloc(scene->context, prep->poly_count, sizeof **polys);
+    if (!*start || !*polys)
+        return 0;
+    for (size_t i = 0; i < prep->poly_count; i++)
+        (*start)[prep->polys[i].source + 1]++;
+    for (size_t s = 0; s < size; s++)
+        (*start)[s + 1] += (*start)[s];
+    for (size_t i = prep->poly_count; i-- > 0;)
+        (*polys)[--(*start)[prep->polys[i].source + 1]] = (uint32_t)i;
+    /* Each end has become the beginning of its own polygons: one place further on it is the offset asked for. */
+    for (size_t s = 0; s < size; s++)
+        (*start)[s] = (*start)[s + 1];
+    (*start)[size] = (uint32_t)prep->poly_count;
+    return 1;
+}

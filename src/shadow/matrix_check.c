@@ -1,0 +1,231 @@
+/* matrix_check.c -- which ones of a shadow matrix cast no shadow at all.
+ *
+ * Place in the data flow: a finished matrix -> every one of it again, by areas instead of separating planes: the caster is cut at the
+ * receiver's plane and just below the light, thrown on the plane along the light's rays, and cut with the receiver there; what is left
+ * has an area or none. Polygons that are not convex come as triangles. Only the shape of the caster's parts is shared with overlap.c.
+ */
+#include "shadow/lamp.h"
+#include "shadow/matrix.h"
+#include "scene/prepare.h"
+
+#include <string.h>
+
+#define LIGHT_GAP 1e-9    /* share of the light's height that is cut off below it */
+#define NO_AREA 1e-9      /* share of the receiver's area */
+#define MOST_CORNERS (2 * GNOI_FACET_CORNERS + 4)
+#define REPORT 4096       /* ones between two looks at the progress callback */
+
+typedef struct point2 {
+    double x, y;
+} point2;
+
+typedef struct ring2 {
+    int count;
+    point2 p[2 * MOST_CORNERS];
+} ring2;
+
+/* The receiver's plane as a coordinate system, and the lamp. */
+typedef struct ground {
+    const gnoi_lamp *lamp;
+    vec3 n, origin, e1, e2;
+    double d, lamp_height;
+} ground;
+
+static ground ground_make(const gno_scene *scene, const gnoi_lamp *lamp, const gnoi_poly *poly)
+{
+    double side = gnoi_lamp_side(lamp, poly->n, poly->d), sign = side < 0 ? -1 : 1;
+    ground g;
+    g.lamp = lamp;
+    g.n = v3_scale(v3_from(poly->n), sign);
+    g.d = poly->d * sign;
+    g.lamp_height = side * sign;
+    g.origin = v3_from(scene->prepared.positions[scene->prepared.corner_vertex[poly->corner]]);
+    g.e1 = v3_unit(v3_cross(g.n, fabs(g.n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0)));
+    g.e2 = v3_cross(g.n, g.e1);
+    return g;
+}
+
+static point2 flatten(const ground *g, vec3 p)
+{
+    point2 q;
+    p = v3_sub(p, g->origin);
+    q.x = v3_dot(p, g->e1);
+    q.y = v3_dot(p, g->e2);
+    return q;
+}
+
+static double height(const ground *g, vec3 p) { return v3_dot(g->n, p) + g->d; }
+
+static point2 throw_on(const ground *g, vec3 p)
+{
+    double h = height(g, p);
+    if (g->lamp->directional)
+        return flatten(g, v3_mad(p, g->lamp->to_light, -h / g->lamp_height));
+    return flatten(g, v3_mad(p, v3_sub(p, g->lamp->position), h / (g->lamp_height - h)));
+}
+
+/* Keeps what lies above (sign 1) or below (-1) the level. */
+static int cut_level(const ground *g, const vec3 *in, int count, double level, double sign, vec3 *out)
+{
+    int n = 0;
+    for (int i = 0; i < count; i++) {
+        vec3 a = in[i], b = in[i + 1 < count ? i + 1 : 0];
+        double sa = sign * (height(g, a) - level), sb = sign * (height(g, b) - level);
+        if (sa >= 0)
+            out[n++] = a;
+        if ((sa > 0 && sb < 0) || (sa < 0 && sb > 0))
+            out[n++] = v3_mad(a, v3_sub(b, a), sa / (sa - sb));
+    }
+    return n;
+}
+
+static double turn(point2 a, point2 b, point2 c) { return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x); }
+
+static double area_of(const ring2 *r)
+{
+    double area = 0;
+    for (int i = 1; i + 1 < r->count; i++)
+        area += 0.5 * turn(r->p[0], r->p[i], r->p[i + 1]);
+    return area;
+}
+
+static void cut_edge(const ring2 *in, point2 from, point2 to, double sign, ring2 *out)
+{
+    out->count = 0;
+    for (int i = 0; i < in->count && out->count + 2 <= 2 * MOST_CORNERS; i++) {
+        point2 a = in->p[i], b = in->p[i + 1 < in->count ? i + 1 : 0];
+        double sa = sign * turn(from, to, a), sb = sign * turn(from, to, b);
+        if (sa >= 0)
+            out->p[out->count++] = a;
+        if ((sa > 0 && sb < 0) || (sa < 0 && sb > 0)) {
+            double t = sa / (sa - sb);
+            out->p[out->count].x = a.x + t * (b.x - a.x);
+            out->p[out->count++].y = a.y + t * (b.y - a.y);
+        }
+    }
+}
+
+/* Area of the shadow that one convex part throws on another. */
+static double shadow_area(const ground *g, const gnoi_facet *receiver, const gnoi_facet *caster)
+{
+    vec3 above[2 * MOST_CORNERS], below[2 * MOST_CORNERS];
+    ring2 region, ring[2];
+    int now = 0, n = cut_level(g, caster->corner, caster->count, 0, 1, above);
+    double sign;
+    memcpy(below, above, (size_t)n * sizeof *above);
+    if (!g->lamp->directional)
+        n = cut_level(g, above, n, g->lamp_height * (1 - LIGHT_GAP), -1, below);
+    ring[0].count = n;
+    for (int i = 0; i < n; i++)
+        ring[0].p[i] = throw_on(g, below[i]);
+    region.count = receiver->count;
+    for (int i = 0; i < receiver->count; i++)
+        region.p[i] = flatten(g, receiver->corner[i]);
+    sign = area_of(&region) < 0 ? -1 : 1;
+    for (int i = 0; i < region.count && ring[now].count > 0; i++, now = !now)
+        cut_edge(&ring[now], region.p[i], region.p[i + 1 < region.count ? i + 1 : 0], sign, &ring[!now]);
+    return fabs(area_of(&ring[now]));
+}
+
+/* The sum over all parts of both, cut short when it is more than enough. */
+static int casts_shadow(const gnoi_search *s, const gnoi_poly *receiver, const gnoi_poly *caster)
+{
+    ground g = ground_make(s->scene, &s->lamp, receiver);
+    gnoi_facet a, b;
+    double area = 0, whole = 0;
+    for (size_t i = 0; gnoi_facet_get(&s->facets, s->scene, receiver, i, &a); i++) {
+        ring2 flat;
+        flat.count = a.count;
+        for (int k = 0; k < a.count; k++)
+            flat.p[k] = flatten(&g, a.corner[k]);
+        whole += fabs(area_of(&flat));
+    }
+    for (size_t i = 0; gnoi_facet_get(&s->facets, s->scene, receiver, i, &a); i++)
+        for (size_t k = 0; gnoi_facet_get(&s->facets, s->scene, caster, k, &b); k++) {
+            area += shadow_area(&g, &a, &b);
+            if (area > NO_AREA * whole)
+                return 1;
+        }
+    return 0;
+}
+
+/* One column, for whichever of the light's points casts the shadow. */
+static gno_status judge_column(const gnoi_search *lamps, size_t lamp_count, const uint32_t *start, const uint32_t *polys,
+                               const gno_matrix_column *column, gno_matrix_check_result *result)
+{
+    const gnoi_prepared *prep = &lamps->scene->prepared;
+    size_t r = column->receiver;
+    for (size_t i = 0; i < column->count; i++) {
+        uint32_t c = column->casters[i];
+        int real = 0;
+        if (c == r || start[r + 1] - start[r] != 1 || start[c + 1] - start[c] != 1)
+            continue;
+        for (size_t k = 0; k < lamp_count && !real; k++)
+            real = casts_shadow(&lamps[k], &prep->polys[polys[start[r]]], &prep->polys[polys[start[c]]]);
+        result->judged++;
+        result->false_ones += !real;
+        if (result->judged % REPORT == 0) {
+            gno_status status = gnoi_progress(lamps->scene->context, "checking", (double)r / (double)lamps->scene->polygon_count);
+            if (status)
+                return status;
+        }
+    }
+    return GNO_OK;
+}
+
+static gno_status judge_all(const gno_scene *scene, const gnoi_search *lamps, size_t lamp_count, gno_matrix *matrix, gno_matrix_check_result *result)
+{
+    uint32_t *start = NULL, *polys = NULL;
+    gno_status status = gnoi_polys_by_source(scene, &start, &polys) ? GNO_OK : GNO_ERROR_MEMORY;
+    for (size_t s = 0; s < matrix->size && !status; s++) {
+        gno_matrix_column column;
+        status = gno_matrix_get_column(matrix, s, &column);
+        if (!status)
+            status = judge_column(lamps, lamp_count, start, polys, &column, result);
+    }
+    gnoi_free(scene->context, start, scene->polygon_count + 1, sizeof *start);
+    gnoi_free(scene->context, polys, scene->prepared.poly_count, sizeof *polys);
+    return status;
+}
+
+static gno_status check_light(gno_scene *scene, const gno_light *light, gno_matrix *matrix, gno_matrix_check_result *result)
+{
+    size_t count = gnoi_lamp_count(light);
+    gnoi_lamp *lamps = gnoi_malloc(scene->context, count, sizeof *lamps);
+    gnoi_search *searches = gnoi_calloc(scene->context, count, sizeof *searches);
+    gnoi_facets facets;
+    gno_status status = gnoi_facets_build(scene, &facets);
+    if (!status && (!lamps || !searches)) {
+        gnoi_facets_free(scene->context, &facets);
+        status = GNO_ERROR_MEMORY;
+    }
+    if (!status) {
+        gnoi_lamps_of(light, lamps);
+        for (size_t i = 0; i < count; i++) {
+            searches[i].scene = scene;
+            searches[i].lamp = lamps[i];
+            searches[i].facets = facets; /* shared; the packets are not needed */
+        }
+        status = judge_all(scene, searches, count, matrix, result);
+        gnoi_facets_free(scene->context, &facets);
+    }
+    gnoi_free(scene->context, lamps, count, sizeof *lamps);
+    gnoi_free(scene->context, searches, count, sizeof *searches);
+    return status;
+}
+
+gno_status gno_matrix_check(gno_scene *scene, int light, gno_matrix *matrix, gno_matrix_check_result *result)
+{
+    gno_status status;
+    if (!scene)
+        return GNO_ERROR_ARGUMENT;
+    if (!matrix || !result)
+        return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_matrix_check: matrix or result is NULL");
+    if (light < 0 || (size_t)light >= scene->light_count || matrix->size != scene->polygon_count)
+        return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_matrix_check: the matrix is not that of light %d of the scene", light);
+    result->judged = result->false_ones = 0;
+    status = gnoi_scene_prepare(scene, 1);
+    if (!status)
+        status = check_light(scene, &scene->lights[light].light, matrix, result);
+    return status == GNO_ERROR_MEMORY ? gnoi_fail(scene->context, status, "out of memory for checking the shadow matrix") : status;
+}
