@@ -56,6 +56,7 @@ SUPPORT_SRC := $(sort $(wildcard tests/support/*.c))
 TEST_SRC   := $(sort $(wildcard tests/unit/test_*.c tests/property/test_*.c tests/pictures/test_*.c tests/robustness/test_*.c))
 TEST_SCRIPTS := $(sort $(wildcard tests/test_*.sh tests/*/test_*.sh))
 SCENES     := $(sort $(wildcard scenes/*.yaml))
+HEADERS    := $(sort $(wildcard include/gnomon/*.h))
 
 ENGINE_OBJ := $(ENGINE_SRC:%.c=$(BUILD)/obj/%.o)
 IO_OBJ     := $(IO_SRC:%.c=$(BUILD)/obj/%.o)
@@ -215,7 +216,7 @@ deps:
 install: all
 	install -d '$(DESTDIR)$(BINDIR)' '$(DESTDIR)$(LIBDIR)/pkgconfig' '$(DESTDIR)$(INCLUDEDIR)/gnomon'
 	install -m 755 $(BUILD)/gnomon '$(DESTDIR)$(BINDIR)'
-	install -m 644 include/gnomon/gnomon.h include/gnomon/gnomon_math.h include/gnomon/gnomon_clip.h include/gnomon/gnomon_io.h '$(DESTDIR)$(INCLUDEDIR)/gnomon'
+	install -m 644 $(HEADERS) '$(DESTDIR)$(INCLUDEDIR)/gnomon'
 	install -m 644 $(STATIC) '$(DESTDIR)$(LIBDIR)'
 	install -m 755 $(SHARED:%=%.$(VERSION)) '$(DESTDIR)$(LIBDIR)'
 	for lib in libgnomon libgnomon-io; do \

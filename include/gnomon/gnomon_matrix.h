@@ -34,10 +34,10 @@ GNO_API gno_matrix_def gno_matrix_def_default(void);
 
 /* What is known of a whole column. */
 typedef enum gno_shade {
-    GNO_SHADE_NONE = 0,    /* no caster: all of it is lit */
+    GNO_SHADE_NONE = 0,    /* no caster: all of the side that the light meets is lit */
     GNO_SHADE_PART = 1,    /* casters, none of which is known to cover all of it */
     GNO_SHADE_COVERED = 2, /* one opaque caster covers all of it */
-    GNO_SHADE_OWN = 3,     /* in its own shadow, and no other caster in the column */
+    GNO_SHADE_OWN = 3,     /* in its own shadow from wherever it is seen; no caster was looked for */
     GNO_SHADE_NO_AREA = 4  /* the polygon has no area and was skipped */
 } gno_shade;
 
@@ -46,8 +46,8 @@ typedef struct gno_matrix_column {
     size_t receiver;
     size_t count;
     const unsigned *casters;
-    int own;
-    gno_shade shade;
+    int own;         /* the diagonal */
+    gno_shade shade; /* of a matrix that was loaded or made from columns only what the casters tell: NONE, PART, or OWN (diagonal alone) */
 } gno_matrix_column;
 
 /* Builds the matrix of light `light` (index as in gno_scene_light). A matrix built at once stands on its own; one on demand refers to

@@ -41,15 +41,11 @@ int output_is_stream(const char *path)
     return strcmp(path, "-") == 0 || (stat(path, &found) == 0 && !S_ISREG(found.st_mode));
 }
 
-static int check_place(const char *path)
+int output_check_place(const char *path)
 {
     struct stat found;
     const char *slash = strrchr(path, '/');
     if (strcmp(path, "-") == 0) {
-        if (isatty(STDOUT_FILENO)) {
-            say("standard output is a terminal: send the picture to a file or a pipe");
-            return EXIT_FAILED;
-        }
         return EXIT_DONE;
     }
     if (stat(path, &found) == 0 && (S_ISDIR(found.st_mode) || access(path, W_OK) != 0)) {
@@ -94,7 +90,11 @@ int outputs_check(outputs *files, int depth, const char *command_name)
         return usage(command_name, "--depth %d: PNG has 8 or 16 bits, EXR 16 or 32, PFM 32", depth);
     }
     for (int i = 0; i < files->count; i++) {
-        const int status = check_place(files->paths[i]);
+        if (strcmp(files->paths[i], "-") == 0 && isatty(STDOUT_FILENO)) {
+            say("standard output is a terminal: send the picture to a file or a pipe");
+            return EXIT_FAILED;
+        }
+        const int status = output_check_place(files->paths[i]);
         if (status != EXIT_DONE) {
             return status;
         }

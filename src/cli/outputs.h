@@ -18,6 +18,9 @@ typedef struct outputs {
 /* Checks names and depth (0: none wished); returns an exit status, its message being out. */
 int outputs_check(outputs *files, int depth, const char *command_name);
 
+/* Whether a file can come to be under this name; says so when not. Returns an exit status. */
+int output_check_place(const char *path);
+
 /* Standard output, a pipe or a device: takes the bytes as they come and leaves nothing half done in a folder. */
 int output_is_stream(const char *path);
 

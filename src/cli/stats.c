@@ -25,8 +25,9 @@ static void print_group(FILE *out, const char *name, const entry *entries, size_
     fprintf(out, "},\n");
 }
 
-static void print(FILE *out, const run_stats *stats)
+static void print(FILE *out, const void *data)
 {
+    const run_stats *stats = data;
     const gno_stats *e = &stats->engine;
     const entry seconds[] = {
         {"load", stats->load_seconds},     {"prepare", e->prepare_seconds}, {"shadow", e->shadow_seconds},
@@ -54,10 +55,10 @@ static int failed(const char *path)
     return EXIT_FAILED;
 }
 
-int stats_write(const char *path, const run_stats *stats)
+int report_write(const char *path, void (*print_report)(FILE *out, const void *data), const void *data)
 {
     if (strcmp(path, "-") == 0) {
-        print(stdout, stats);
+        print_report(stdout, data);
         return close_output();
     }
     /* A device or pipe takes the text as it comes; a file is written beside and renamed. */
@@ -79,7 +80,7 @@ int stats_write(const char *path, const run_stats *stats)
     if (out == NULL) {
         status = failed(path);
     } else {
-        print(out, stats);
+        print_report(out, data);
         const int bad = ferror(out);
         if (fclose(out) != 0 || bad || (!direct && rename(name, path) != 0)) {
             status = failed(path);
@@ -90,4 +91,9 @@ int stats_write(const char *path, const run_stats *stats)
     }
     free(name);
     return status;
+}
+
+int stats_write(const char *path, const run_stats *stats)
+{
+    return report_write(path, print, stats);
 }

@@ -4,6 +4,8 @@
 
 #include "cli/cli.h"
 
+#include <stdio.h>
+
 typedef struct run_stats {
     const char *scene;
     int width, height, threads;
@@ -11,6 +13,10 @@ typedef struct run_stats {
     double load_seconds, render_seconds, write_seconds, total_seconds;
     size_t peak_memory;
 } run_stats;
+
+/* What print_report prints of data, to a file, whole or not at all, or "-" for standard output; says what went wrong. Returns an exit
+ * status. */
+int report_write(const char *path, void (*print_report)(FILE *out, const void *data), const void *data);
 
 /* To a file, whole or not at all, or "-" for standard output; says what went wrong. Returns an exit status. */
 int stats_write(const char *path, const run_stats *stats);

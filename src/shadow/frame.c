@@ -141,14 +141,14 @@ static int dominant_face(vec3 q)
     return 4 + (q.z < 0);
 }
 
-int gnoi_frame_face(const gnoi_frame *frame, double u) { return frame->faces == 1 ? 0 : (int)floor(u / FACE_STEP + 0.5); }
+int gnoi_frame_face(const gnoi_frame *frame, double u) { return frame->faces == 1 ? 0 : (int)floor(u / GNOI_FACE_STEP + 0.5); }
 
 void gnoi_frame_ray(const gnoi_frame *frame, double u, double v, vec3 *from, vec3 *along)
 {
     vec3 across = v3_mad(v3_scale(frame->axis[0], u), frame->axis[1], v);
     int face = gnoi_frame_face(frame, u);
     *from = frame->parallel ? v3_add(frame->origin, across) : frame->origin;
-    *along = frame->faces == 6  ? from_face(v3(u - FACE_STEP * face, v, 1), face)
+    *along = frame->faces == 6  ? from_face(v3(u - GNOI_FACE_STEP * face, v, 1), face)
              : frame->parallel ? frame->axis[2]
                                : v3_add(frame->axis[2], across);
 }
@@ -162,7 +162,7 @@ int gnoi_frame_locate_on(const gnoi_frame *frame, int face, const vec3 *points, 
         if (!(q.z > 0))
             return 0;
         located[i].q = 1 / q.z;
-        located[i].u = q.x * located[i].q + FACE_STEP * face;
+        located[i].u = q.x * located[i].q + GNOI_FACE_STEP * face;
         located[i].v = q.y * located[i].q;
     }
     return 1;

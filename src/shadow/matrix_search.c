@@ -208,7 +208,7 @@ static int search_receiver(const gnoi_search *search, uint32_t index, int own, c
             return 0;
     }
     if (own & OWN) {
-        shade = shade == GNO_SHADE_NONE ? GNO_SHADE_OWN : shade;
+        shade = own & SEARCH ? shade : GNO_SHADE_OWN;
         if (!add_caster(f, poly->source))
             return 0;
     }

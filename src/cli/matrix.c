@@ -1,0 +1,322 @@
+/* matrix.c -- gnomon matrix: the binary shadow matrix of a light, as a list or a picture.
+ *
+ * Place: arguments -> gno_scene_load -> for each light asked for: gno_matrix_build -> gno_matrix_save -> --stats (matrix_stats.c).
+ */
+#include "cli/cli.h"
+#include "cli/interrupt.h"
+#include "cli/matrix_stats.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum option_id { OUTPUT, LIGHT, THREADS, CHECK, SET, STATS, QUIET, HELP };
+
+static const option options[] = {
+    [OUTPUT] = {"output", 'o', "FILE", "by extension: .mtx (Matrix Market, pattern), .csv, .png (picture);\n"
+                                       "\"-\", the default, is a .mtx on standard output; %s in FILE\n"
+                                       "stands for the light's name: a file for each light"},
+    [LIGHT] = {"light", 0, "NAME", "the light, by its name; default: the first (all with %s in FILE)"},
+    [THREADS] = {"threads", 0, "N", "0, the default: one per processor; the matrix is the same"},
+    [CHECK] = {"check", 0, NULL, "count the ones that cast no shadow at all, for --stats (done for\n"
+                                 "small scenes in any case)"},
+    [SET] = {"set", 0, "KEY=VALUE", "override a scene value, as in gnomon render"},
+    [STATS] = {"stats", 0, "FILE", "one JSON object for each light: seconds, counts, share of false\n"
+                                   "ones, memory; \"-\" is standard output"},
+    [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
+    [HELP] = {"help", 'h', NULL, "this text"},
+};
+
+enum { OPTIONS = sizeof options / sizeof options[0] };
+
+/* Up to so many polygons the ones are checked without being asked for: it takes no time to speak of. */
+enum { SMALL_SCENE = 2000 };
+
+typedef struct job {
+    const char *scene_path, *output, *light, *stats_path;
+    gno_setting *settings;
+    size_t setting_count;
+    int threads, check, quiet;
+    int each; /* the output's name has %s */
+} job;
+
+static int help(void)
+{
+    printf("usage: gnomon matrix [OPTIONS] SCENE [-o FILE]\n\n"
+           "The binary shadow matrix of a light in SCENE: rows are casters, columns are receivers. A one means that the\n"
+           "row's polygon may keep the light from a part of the column's; a zero is certain. A one on the diagonal is own\n"
+           "shadow: the light is behind the polygon. Polygons have the numbers of the scene, in the order of its objects,\n"
+           "from 1 in .mtx and from 0 in .csv.\n\noptions:\n");
+    option_print(options, OPTIONS);
+    printf("\nexamples:\n"
+           "  gnomon matrix town.yaml -o town.mtx --light sun\n"
+           "  gnomon matrix town.yaml -o town_%%s.png                     a picture for each light\n"
+           "  gnomon matrix town.yaml -o town.csv --check --stats -\n");
+    return close_output();
+}
+
+static int has_extension(const char *path, const char *extension)
+{
+    const char *slash = strrchr(path, '/');
+    const char *dot = strrchr(slash != NULL ? slash : path, '.');
+    return dot != NULL && strcasecmp(dot, extension) == 0;
+}
+
+static int check_output(job *work)
+{
+    const char *percent = strchr(work->output, '%');
+    if (strcmp(work->output, "-") == 0) {
+        return work->stats_path != NULL && strcmp(work->stats_path, "-") == 0
+                   ? usage("matrix", "standard output cannot take both the matrix and --stats")
+                   : -1;
+    }
+    if (!has_extension(work->output, ".mtx") && !has_extension(work->output, ".csv") && !has_extension(work->output, ".png")) {
+        return usage("matrix", "%s: the extension is not one of .mtx, .csv, .png", work->output);
+    }
+    if (percent != NULL) {
+        if (percent[1] != 's' || strchr(percent + 1, '%') != NULL) {
+            return usage("matrix", "%s: a %% in the name must be one %%s", work->output);
+        }
+        work->each = 1;
+    }
+    const int status = output_check_place(work->output);
+    return status == EXIT_DONE ? -1 : status;
+}
+
+/* Returns an exit status, or -1 to go on. */
+static int take_option(job *work, int id, char *value)
+{
+    switch (id) {
+    case OUTPUT:
+        work->output = value;
+        return -1;
+    case LIGHT:
+        work->light = value;
+        return -1;
+    case THREADS:
+        return parse_int(value, 0, GNO_MAX_THREADS, &work->threads)
+                   ? -1
+                   : usage("matrix", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
+    case CHECK:
+        work->check = 1;
+        return -1;
+    case SET:
+        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("matrix", "--set %s: not KEY=VALUE", value);
+    case STATS:
+        work->stats_path = value;
+        return -1;
+    case QUIET:
+        work->quiet = 1;
+        return -1;
+    default:
+        return help();
+    }
+}
+
+static int read_arguments(job *work, int argc, char **argv)
+{
+    option_reader reader = option_reader_make("matrix", options, OPTIONS, argc, argv);
+    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
+        if (id == OPTION_WRONG) {
+            return EXIT_USAGE;
+        }
+        if (id == OPTION_OPERAND) {
+            if (work->scene_path != NULL) {
+                return usage("matrix", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
+            }
+            work->scene_path = reader.value;
+            continue;
+        }
+        const int status = take_option(work, id, reader.value);
+        if (status >= 0) {
+            return status;
+        }
+    }
+    return work->scene_path != NULL ? check_output(work) : usage("matrix", "no scene given");
+}
+
+/* ---- one light ----------------------------------------------------------------------------------------------------- */
+
+/* FILE with %s replaced by the light's name; what is no part of a file name becomes an underscore. NULL: out of memory. */
+static char *path_for(const job *work, const char *name)
+{
+    const char *percent = work->each ? strchr(work->output, '%') : NULL;
+    const size_t head = percent != NULL ? (size_t)(percent - work->output) : strlen(work->output);
+    char *path = malloc(strlen(work->output) + strlen(name) + 1);
+    if (path == NULL) {
+        return NULL;
+    }
+    memcpy(path, work->output, head);
+    path[head] = '\0';
+    if (percent != NULL) {
+        char *at = path + head;
+        for (; *name != '\0'; name++) {
+            *at++ = *name == '/' || (unsigned char)*name < ' ' ? '_' : *name;
+        }
+        strcpy(at, percent + 2);
+    }
+    return path;
+}
+
+static gno_status save(const job *work, gno_context *context, gno_matrix *matrix, const char *name)
+{
+    gno_matrix_file_def def = gno_matrix_file_def_default();
+    char note[300];
+    char *path = path_for(work, name);
+    if (path == NULL) {
+        return gno_context_fail(context, GNO_ERROR_MEMORY, "out of memory");
+    }
+    snprintf(note, sizeof note, "light \"%.100s\" of %.150s", name, work->scene_path);
+    def.note = note;
+    const int stream = output_is_stream(path);
+    if (stream) {
+        interrupt_release(); /* see render.c: a reader that does not read must not hold up a signal */
+    }
+    gno_status status = gno_matrix_save(matrix, path, &def);
+    if (stream) {
+        interrupt_catch();
+    }
+    free(path);
+    return status;
+}
+
+static gno_status run_light(const job *work, gno_scene *scene, int light, matrix_stats *stats)
+{
+    gno_context *context = gno_scene_context(scene);
+    gno_matrix_def def = gno_matrix_def_default();
+    gno_matrix *matrix = NULL;
+    gno_status status = gno_scene_light(scene, light, NULL, &stats->light);
+    def.threads = work->threads;
+    if (status == GNO_OK) {
+        status = gno_matrix_build(scene, light, &def, &matrix);
+    }
+    const double built = seconds_now();
+    if (status == GNO_OK) {
+        status = save(work, context, matrix, stats->light);
+    }
+    stats->write_seconds = seconds_now() - built;
+    if (status == GNO_OK && work->stats_path != NULL) {
+        status = gno_matrix_get_info(matrix, &stats->info);
+        stats->checked = work->check || stats->info.size <= SMALL_SCENE;
+        if (status == GNO_OK && stats->checked) {
+            status = gno_matrix_check(scene, light, matrix, &stats->check);
+        }
+        gno_context_memory(context, &stats->peak_memory);
+    }
+    gno_matrix_destroy(matrix);
+    return status;
+}
+
+/* ---- the run ------------------------------------------------------------------------------------------------------- */
+
+static int find_light(const job *work, gno_scene *scene, int *light)
+{
+    const int count = (int)gno_scene_count(scene).lights;
+    const char **names = calloc((size_t)count + 1, sizeof *names);
+    if (names == NULL) {
+        say("out of memory");
+        return EXIT_FAILED;
+    }
+    for (*light = 0; *light < count; ++*light) {
+        gno_scene_light(scene, *light, NULL, &names[*light]);
+        if (strcmp(names[*light], work->light) == 0) {
+            break;
+        }
+    }
+    const char *near = *light == count ? nearest_name(work->light, names, count) : NULL;
+    if (*light == count) {
+        say(near != NULL ? "%s: there is no light \"%s\"; did you mean \"%s\"?" : "%s: there is no light \"%s\"", work->scene_path, work->light, near);
+    }
+    const int status = *light == count ? EXIT_FAILED : EXIT_DONE;
+    free(names);
+    return status;
+}
+
+static int run_lights(const job *work, gno_scene *scene, progress *shown, double load_seconds)
+{
+    int first = 0, end = (int)gno_scene_count(scene).lights;
+    if (end == 0) {
+        say("%s: has no light", work->scene_path);
+        return EXIT_FAILED;
+    }
+    if (work->light != NULL) {
+        const int status = find_light(work, scene, &first);
+        if (status != EXIT_DONE) {
+            return status;
+        }
+    }
+    end = work->each && work->light == NULL ? end : first + 1;
+    matrix_report report = {work->scene_path, work->threads, load_seconds, 0, calloc((size_t)(end - first), sizeof(matrix_stats))};
+    if (report.lights == NULL) {
+        say("out of memory");
+        return EXIT_FAILED;
+    }
+    gno_status status = GNO_OK;
+    interrupt_catch();
+    for (int light = first; light < end && status == GNO_OK; light++) {
+        status = run_light(work, scene, light, &report.lights[report.count++]);
+    }
+    progress_clear(shown);
+    int result = EXIT_DONE;
+    if (interrupt_signal() != 0) {
+        say("interrupted; nothing half done is left");
+        result = EXIT_SIGNAL + interrupt_signal();
+    } else if (status != GNO_OK) {
+        say("%s", gno_context_message(gno_scene_context(scene)));
+        result = EXIT_FAILED;
+    } else {
+        interrupt_release();
+        result = work->stats_path != NULL ? report_write(work->stats_path, matrix_stats_print, &report) : EXIT_DONE;
+    }
+    free(report.lights);
+    return result;
+}
+
+static int run_job(const job *work)
+{
+    progress shown = progress_make(work->quiet);
+    const double begun = seconds_now();
+    const gno_context_def def = progress_context_def(&shown);
+    gno_context *context = NULL;
+    gno_scene *scene = NULL;
+    int status = EXIT_FAILED;
+    if (gno_context_create(&def, &context) != GNO_OK) {
+        say("out of memory");
+        return EXIT_FAILED;
+    }
+    if (gno_scene_load(context, work->scene_path, work->settings, work->setting_count, &scene) == GNO_OK) {
+        status = run_lights(work, scene, &shown, seconds_now() - begun);
+    } else {
+        progress_clear(&shown);
+        say("%s", gno_context_message(context));
+    }
+    gno_scene_destroy(scene);
+    gno_context_destroy(context);
+    return status;
+}
+
+static int run(int argc, char **argv)
+{
+    job work;
+    memset(&work, 0, sizeof work);
+    work.output = "-";
+    /* No more settings than arguments; one more so that the size is never zero. */
+    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
+    int status = EXIT_FAILED;
+    if (work.settings == NULL) {
+        say("out of memory");
+    } else {
+        status = read_arguments(&work, argc, argv);
+        if (status < 0) {
+            status = run_job(&work);
+        }
+    }
+    free(work.settings);
+    return status;
+}
+
+const command command_matrix = {"matrix", "the binary shadow matrix of a light: Matrix Market, CSV, picture", run};
