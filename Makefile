@@ -226,7 +226,7 @@ install: all
 
 uninstall:
 	rm -f '$(DESTDIR)$(BINDIR)/gnomon'
-	rm -f $(foreach h,gnomon gnomon_math gnomon_clip gnomon_io,'$(DESTDIR)$(INCLUDEDIR)/gnomon/$(h).h')
+	rm -f $(foreach h,$(notdir $(HEADERS)),'$(DESTDIR)$(INCLUDEDIR)/gnomon/$(h)')
 	-rmdir '$(DESTDIR)$(INCLUDEDIR)/gnomon'
 	for lib in libgnomon libgnomon-io; do \
 	  rm -f '$(DESTDIR)$(LIBDIR)'/$$lib.a '$(DESTDIR)$(LIBDIR)'/$$lib.so '$(DESTDIR)$(LIBDIR)'/$$lib.so.$(SOMAJOR) \
