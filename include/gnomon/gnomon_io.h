@@ -8,6 +8,7 @@
 
 #include <gnomon/gnomon.h>
 #include <gnomon/gnomon_matrix.h>
+#include <gnomon/gnomon_pieces.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -72,6 +73,22 @@ GNO_API gno_status gno_matrix_save(gno_matrix *matrix, const char *path, const g
 /* Reads a Matrix Market file: coordinate, pattern, general, square; entries in any order. What it does not hold is not known of
  * the columns afterwards (which were covered, which polygons have no area). Errors: MEMORY, FILE, INPUT, LIMIT; messages name file and line. */
 GNO_API gno_status gno_matrix_load(gno_context *context, const char *path, gno_matrix **matrix);
+/* What gno_lit_pieces gave for one expanded light. */
+typedef struct gno_lit_result {
+    size_t light;             /* its number */
+    const gno_lit_row *rows;  /* one a polygon of the scene; for the table */
+    const gno_pieces *pieces; /* for the pieces file */
+} gno_lit_result;
+
+/* Writes a CSV table (RFC 4180, one header line), light after light, one line a polygon: polygon, object, light, sample (which point of
+ * an area light, else 0), side, area, lit_area, lit_fraction, dimmed_area, centroid_x, centroid_y, centroid_z (empty where nothing
+ * is lit). Path as for pictures. Errors: MEMORY, ARGUMENT, FILE. */
+GNO_API gno_status gno_lit_table_write(const gno_scene *scene, const char *path, const gno_lit_result *results, size_t count);
+
+/* Writes the pieces of all results, by the path's extension: .obj (one object a polygon and light; pieces with holes are cut into
+ * faces without) or .geojson, .json (a FeatureCollection of Polygons, three coordinates, with the properties polygon, object, light,
+ * sample, side, area, passed). Errors: MEMORY, ARGUMENT (unknown extension), FILE. */
+GNO_API gno_status gno_pieces_write(const gno_scene *scene, const char *path, const gno_lit_result *results, size_t count);
 
 #ifdef __cplusplus
 }
