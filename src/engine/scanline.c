@@ -110,6 +110,16 @@ static gno_status render_tiles(gnoi_frame_job *frame, int threads, gno_stats *st
     return status;
 }
 
+/* The mean of a material's picture. */
+static void set_mean(const gno_scene *scene, const gno_material *m, gnoi_tone *tone)
+{
+    const gnoi_image *image = &scene->images[m->texture.image];
+    float value[4];
+    gnoi_image_value(image, image->level_count - 1, 0, 0, value);
+    for (int k = 0; k < 3; k++)
+        tone->mean[k] = value[3] > 0 ? value[k] / value[3] : 0;
+}
+
 /* The scene's materials in single precision; NULL when memory fails. */
 static gnoi_tone *make_tones(const gno_scene *scene)
 {
@@ -123,6 +133,9 @@ static gnoi_tone *make_tones(const gno_scene *scene)
         }
         tones[i].shininess = (float)m->shininess;
         tones[i].textured = m->texture.kind != GNO_TEXTURE_NONE;
+        tones[i].mean[0] = tones[i].mean[1] = tones[i].mean[2] = 0;
+        if (m->texture.kind == GNO_TEXTURE_IMAGE)
+            set_mean(scene, m, &tones[i]);
     }
     return tones;
 }
@@ -168,6 +181,8 @@ static gno_status draw_frame(gnoi_frame_job *frame, int threads, gno_stats *stat
     gno_status status = GNO_ERROR_MEMORY;
     frame->lamp_light = lamp_light;
     frame->tones = make_tones(scene);
+    for (size_t i = 0; frame->tones && i < scene->material_count; i++)
+        frame->textured |= frame->tones[i].textured;
     if (frame->tones && (lamp_light || !frame->layers))
         status = render_tiles(frame, threads, stats);
     gnoi_free(scene->context, frame->tones, scene->material_count, sizeof *frame->tones);

@@ -27,6 +27,7 @@
 typedef struct gnoi_tone {
     float ambient[3], diffuse[3], specular[3], shininess;
     int textured;
+    float mean[3]; /* of the texture, where it is a picture; else all zero */
 } gnoi_tone;
 
 /* What all tiles of one picture share; read only while tiles are made. */
@@ -40,6 +41,7 @@ typedef struct gnoi_frame_job {
     const gnoi_lamp *lamps;
     const gnoi_casters *casters; /* one for each lamp */
     int lamp_count;
+    int textured; /* some material is */
     float *rgb;
     const gno_layers *layers; /* NULL: none */
     const uint32_t *lamp_light; /* with layers: the scene's light that a lamp is of */
@@ -153,6 +155,7 @@ typedef struct gnoi_tile {
     size_t mapping_count, mapping_capacity;
     gnoi_mapping *mappings;
     float texel[4];                        /* of the pixel and surface sampled last, where it is textured */
+    float even[3][GNOI_BATCH];             /* beside the batch, in textured pictures: factor that puts the texture's mean in the texel's place */
     float acc[3][GNOI_TILE_PIXELS];        /* sums over lines */
     float weight[GNOI_TILE_PIXELS];        /* lines that cover the pixel */
     float line_acc[GNOI_BASE_LINES][3][GNOI_TILE_PIXELS]; /* the pixel's colour on each base line */

@@ -13,9 +13,22 @@ static int is_precomputed(const gnoi_slot *slot)
     return s == GNO_SHADING_CONSTANT || s == GNO_SHADING_GOURAUD;
 }
 
+/* Added to texel and mean before they are divided, and the most that comes of it. */
+#define EVEN_FLOOR 0.02f
+#define EVEN_MOST 4.0f
+
+static float even_factor(const gnoi_tone *tone, const float *texel, int k)
+{
+    float factor = tone->textured && tone->mean[k] > 0 ? (tone->mean[k] + EVEN_FLOOR) / (texel[k] + EVEN_FLOOR) : 1;
+    return factor < EVEN_MOST ? factor : EVEN_MOST;
+}
+
 /* ---- into the picture --------------------------------------------------------------------------------------------- */
 
-static void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], float coverage, const float *by_line, size_t stride)
+/* `judged`: the colour by which pixels are judged, rgb itself unless the surface is textured. A texture changes from row to row,
+ * but is filtered already: that calls for no finer lines. */
+static void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], const float judged[3], float coverage, const float *by_line,
+                       size_t stride)
 {
     int lines = tile->judging ? tile->job->def.base_lines : 0;
     for (int k = 0; k < 3; k++)
@@ -23,7 +36,7 @@ static void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], floa
     for (int i = 0; i < lines; i++) {
         float share = by_line[(size_t)i * stride] / coverage;
         for (int k = 0; k < 3 && share > 0; k++)
-            tile->line_acc[i][k][pixel] += share * rgb[k];
+            tile->line_acc[i][k][pixel] += share * judged[k];
     }
 }
 
@@ -32,11 +45,13 @@ void gnoi_tile_flush(gnoi_tile *tile)
     gnoi_batch *b = &tile->batch;
     gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
     for (int i = 0; i < b->count; i++) {
-        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]};
+        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]}, judged[3];
+        for (int k = 0; k < 3 && tile->job->textured; k++)
+            judged[k] = rgb[k] * tile->even[k][i];
         if (tile->tinted)
             gnoi_tile_add_shares(tile, b->tag[i], rgb, &tile->share_by_line[0][0][i], GNOI_BATCH);
         else
-            add_colour(tile, b->tag[i], rgb, b->coverage[i], &tile->cover_by_line[0][i], GNOI_BATCH);
+            add_colour(tile, b->tag[i], rgb, tile->job->textured ? judged : rgb, b->coverage[i], &tile->cover_by_line[0][i], GNOI_BATCH);
     }
     tile->shaded += b->count;
     b->count = 0;
@@ -138,7 +153,7 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
     const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
     size_t lamps = (size_t)job->lamp_count, corners = slot->receiver.poly->shading == GNO_SHADING_GOURAUD ? 3 : 1;
     double w[3], (*intensity)[3] = seek_intensities(tile, slot, x, y, w);
-    float rgb[3], coverage = cells->length[column];
+    float rgb[3], judged[3], coverage = cells->length[column];
     if (!intensity)
         return;
     for (int k = 0; k < 3; k++)
@@ -156,7 +171,9 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
         gnoi_tile_add_tinted(tile, row, column, cells, tint != NULL, rgb);
         return;
     }
-    add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, coverage, &cells->by_line[0][column], GNOI_TILE_W);
+    for (int k = 0; k < 3; k++)
+        judged[k] = rgb[k] * even_factor(tone, texel, k);
+    add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, judged, coverage, &cells->by_line[0][column], GNOI_TILE_W);
 }
 
 /* ---- samples for the batch ----------------------------------------------------------------------------------------- */
@@ -218,11 +235,14 @@ static void set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, dou
                     tile->x0 + column + 0.5, tile->y0 + row - 0.5, x, y, tile->texel);
 }
 
-static void apply_texel(gnoi_batch *b, int i, const float texel[4])
+static void apply_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
 {
-    for (int k = 0; k < 3; k++) {
-        b->kd[k][i] *= texel[k];
-        b->rgb[k][i] *= texel[k];
+    gnoi_batch *b = &tile->batch;
+    for (int k = 0; k < 3; k++)
+        tile->even[k][i] = even_factor(tone, tile->texel, k);
+    for (int k = 0; k < 3 && tone->textured; k++) {
+        b->kd[k][i] *= tile->texel[k];
+        b->rgb[k][i] *= tile->texel[k];
     }
 }
 
@@ -245,8 +265,8 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
     set_normal(b, i, job, slot, x, y);
     set_material(b, i, tone, coverage, tint);
-    if (tone->textured)
-        apply_texel(b, i, tile->texel);
+    if (job->textured)
+        apply_texel(tile, i, tone);
     if (tile->tinted)
         gnoi_tile_tint_sample(tile, i, column, cells, tint != NULL);
     b->coverage[i] = coverage;

@@ -4,7 +4,7 @@
  *
  * Read as they stand: Ka, Kd, Ks (linear RGB; one number stands for three), Ns, and d or Tr as transmission 1-d or Tr,
  * the same for all channels. Without Kd the diffuse colour is 0.8, without Ka the ambient one is the diffuse one. `illum`
- * switches nothing off. Where both d and Tr are given d holds: exporters disagree about Tr. Textures are counted only.
+ * switches nothing off. Where both d and Tr are given d holds: exporters disagree about Tr. Pictures: mtl_map.h.
  */
 #include "mtl.h"
 #include "obj_parse.h"
@@ -20,6 +20,8 @@ typedef struct gnoi_mtl_entry {
     int given;         /* given_... bits */
     int scene_index;
     size_t first_line; /* where the OBJ file uses it first; 0: nowhere yet */
+    gnoi_mtl_map maps[GNOI_MTL_USES];
+    int path; /* number of the library's path: where pictures are looked for */
 } gnoi_mtl_entry;
 
 /* One library being read. */
@@ -28,7 +30,7 @@ typedef struct reader {
     const char *path;
     size_t line;
     int current; /* entry number, -1 before the first newmtl */
-    size_t texture_count;
+    int path_number;
 } reader;
 
 /* ---- the table ---------------------------------------------------------------------------------------------- */
@@ -62,6 +64,10 @@ void gnoi_mtl_free(gnoi_mtl *mtl)
 {
     gnoi_names_free(mtl->context, &mtl->names);
     gnoi_names_free(mtl->context, &mtl->libraries);
+    gnoi_names_free(mtl->context, &mtl->paths);
+    for (size_t i = 0; i < mtl->entries.count; i++)
+        for (int use = 0; use < GNOI_MTL_USES; use++) gnoi_mtl_map_free(mtl->context, &entry_at(mtl, (int)i)->maps[use]);
+    if (mtl->textures.scene) gnoi_textures_free(&mtl->textures);
     gnoi_mesh_array_free(mtl->context, &mtl->entries, sizeof(gnoi_mtl_entry));
 }
 
@@ -169,12 +175,9 @@ static gno_status start_material(reader *r, const char *p)
     entry->material = gno_material_default();
     entry->given = 0;
     entry->defined = 1;
+    entry->path = r->path_number;
+    for (int use = 0; use < GNOI_MTL_USES; use++) gnoi_mtl_map_free(r->mtl->context, &entry->maps[use]);
     return GNO_OK;
-}
-
-static int is_texture(const char *p, const char *end)
-{
-    return is_word(p, end, "map_kd") || is_word(p, end, "map_bump") || is_word(p, end, "bump");
 }
 
 static gno_status read_property(reader *r, const char *p, const char *end)
@@ -183,10 +186,9 @@ static gno_status read_property(reader *r, const char *p, const char *end)
     static const char *const keys[] = {"Ka", "Kd", "Ks", "Ns", "d", "Tr"};
     size_t which = 0, count = sizeof known / sizeof known[0];
     while (which < count && !is_word(p, end, known[which])) which++;
-    if (which == count) {
-        if (is_texture(p, end)) r->texture_count++;
-        return GNO_OK;
-    }
+    int use = which == count ? gnoi_mtl_map_use(p, end) : -1;
+    if (which == count && (use < 0 || r->current < 0)) return GNO_OK;
+    if (use >= 0) return gnoi_mtl_map_read(r->mtl->context, r->path, r->line, end, &entry_at(r->mtl, r->current)->maps[use]);
     if (r->current < 0)
         return gnoi_mesh_fail(r->mtl->context, GNO_ERROR_INPUT, r->path, r->line, "%s: no newmtl before it", keys[which]);
     gnoi_mtl_entry *entry = entry_at(r->mtl, r->current);
@@ -224,8 +226,9 @@ static gno_status read_block(reader *r, const char *p, const char *last)
 
 static gno_status read_library(gnoi_mtl *mtl, const char *path)
 {
-    reader r = {mtl, path, 0, -1, 0};
+    reader r = {mtl, path, 0, -1, gnoi_names_number(mtl->context, &mtl->paths, path, strlen(path))};
     gnoi_blocks blocks;
+    if (r.path_number < 0) return gnoi_mesh_no_memory(mtl->context, path);
     gno_status status = gnoi_blocks_open(&blocks, mtl->context, path);
     while (status == GNO_OK) {
         const char *first, *last;
@@ -234,9 +237,6 @@ static gno_status read_library(gnoi_mtl *mtl, const char *path)
         status = read_block(&r, first, last);
     }
     gnoi_blocks_close(&blocks);
-    if (status == GNO_OK && r.texture_count > 0)
-        gnoi_mesh_warn(mtl->context, path, 0, "%zu textures are not drawn in this version: plain colours are used",
-                       r.texture_count);
     return status;
 }
 
@@ -308,11 +308,14 @@ gno_status gnoi_mtl_read_libraries(gnoi_mtl *mtl, const char *obj_path, size_t l
 
 /* ---- into the scene ----------------------------------------------------------------------------------------- */
 
-static gno_status add_to_scene(gnoi_mtl_entry *entry, const char *name, gno_scene *scene, const char *obj_path)
+static gno_status add_to_scene(gnoi_mtl *mtl, gnoi_mtl_entry *entry, const char *name, gno_scene *scene, const char *obj_path)
 {
     gno_material material = entry->material;
     if (!(entry->given & given_ambient)) memcpy(material.ambient, material.diffuse, sizeof material.ambient);
-    gno_status status = gno_scene_add_material(scene, &material, &entry->scene_index);
+    mtl->textures.scene = scene;
+    gno_status status = gnoi_mtl_maps_apply(&mtl->textures, gnoi_names_text(&mtl->paths, entry->path), entry->maps, &material);
+    if (status != GNO_OK) return status;
+    status = gno_scene_add_material(scene, &material, &entry->scene_index);
     if (status == GNO_OK) status = gno_scene_set_material_name(scene, entry->scene_index, name);
     return status == GNO_OK ? GNO_OK : gnoi_mesh_blame(scene, obj_path, status);
 }
@@ -328,7 +331,7 @@ gno_status gnoi_mtl_to_scene(gnoi_mtl *mtl, gno_scene *scene, const char *obj_pa
         }
         gnoi_mtl_entry *entry = entry_at(mtl, numbers[i]);
         if (entry->scene_index == not_in_scene && entry->defined) {
-            gno_status status = add_to_scene(entry, gnoi_names_text(&mtl->names, numbers[i]), scene, obj_path);
+            gno_status status = add_to_scene(mtl, entry, gnoi_names_text(&mtl->names, numbers[i]), scene, obj_path);
             if (status != GNO_OK) return status;
         } else if (entry->scene_index == not_in_scene) {
             entry->scene_index = 0;

@@ -7,12 +7,15 @@
 #define GNOI_IO_MTL_H
 
 #include "mesh_util.h"
+#include "mtl_map.h"
 
 typedef struct gnoi_mtl {
     gno_context *context;
     gnoi_names names;        /* of materials, used or defined */
     gnoi_mesh_array entries; /* gnoi_mtl_entry, one per name */
     gnoi_names libraries;    /* read already, or found missing: not again */
+    gnoi_names paths;        /* of libraries, as opened */
+    gnoi_textures textures;
 } gnoi_mtl;
 
 /* The number of a material's name, first used in this line of the OBJ file; -1 when memory fails. */

@@ -83,6 +83,8 @@ gno_status gnoi_scene_read_yaml(gno_scene *scene, gnoi_yaml *yaml, const char *p
     if (status == GNO_OK) status = gnoi_read_materials(&reader, seen[MATERIALS]);
     if (status == GNO_OK) status = gnoi_read_objects(&reader, seen[OBJECTS]);
     if (status == GNO_OK) gnoi_warn_undrawn(&reader);
+    reader.textures.scene = scene;
+    gnoi_textures_free(&reader.textures);
     gnoi_scene_names_free(reader.context, &reader.materials);
     return status;
 }

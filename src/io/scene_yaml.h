@@ -3,7 +3,7 @@
  * Place: tree of the file with its settings -> sections -> gno_scene_add_..., gno_scene_set_...
  *
  *   scene_yaml.c    whole file: order of sections, version, image, ambient
- *   scene_camera.c  camera            scene_material.c  materials (texture, bump: checked, not drawn yet)
+ *   scene_camera.c  camera            scene_material.c  materials; scene_texture.c: their texture and bump
  *   scene_light.c   lights            scene_object.c    objects: reading, names, details' priorities
  *                                     scene_shape.c     one object's polygons: mesh file, polygon, sphere
  *                                     scene_transform.c transform lists
@@ -13,6 +13,7 @@
 #ifndef GNOI_IO_SCENE_YAML_H
 #define GNOI_IO_SCENE_YAML_H
 
+#include "io/texture_file.h"
 #include "io/yaml_value.h"
 
 /* Names sorted for searching; value is an index in whatever was named. */
@@ -27,12 +28,7 @@ typedef struct gnoi_names {
 } gnoi_names;
 
 /* What a scene asked for that this version does not draw. */
-enum {
-    GNOI_UNDRAWN_TEXTURE = 1,
-    GNOI_UNDRAWN_BUMP = 2,
-    GNOI_UNDRAWN_REFLECTION = 4,
-    GNOI_UNDRAWN_IOR = 8
-};
+enum { GNOI_UNDRAWN_REFLECTION = 1, GNOI_UNDRAWN_IOR = 2 };
 
 typedef struct gnoi_scene_reader {
     gno_context *context;
@@ -40,6 +36,7 @@ typedef struct gnoi_scene_reader {
     const char *path; /* of the scene file: mesh paths are relative to it */
     gno_scene *scene;
     gnoi_names materials;
+    gnoi_textures textures; /* pictures read for them */
     unsigned undrawn;
 } gnoi_scene_reader;
 
@@ -72,6 +69,11 @@ gno_status gnoi_read_procedural(gnoi_scene_reader *reader, const gnoi_yaml_node 
 gno_status gnoi_read_procedural_bump(gnoi_scene_reader *reader, const gnoi_yaml_node *node, gno_bump *bump);
 gno_status gnoi_read_objects(gnoi_scene_reader *reader, const gnoi_yaml_node *node);
 gno_status gnoi_read_transform(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double transform[12]);
+
+/* `texture` and `bump` over what the structures hold; a bump lies as the texture does where it does not say otherwise. */
+gno_status gnoi_read_texture(gnoi_scene_reader *reader, const gnoi_yaml_node *node, gno_texture *texture);
+gno_status gnoi_read_bump(gnoi_scene_reader *reader, const gnoi_yaml_node *node, const gno_texture *texture, gno_bump *bump);
+gno_status gnoi_read_scale(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double scale[2]);
 
 /* Adds the polygons of one object, its priority settled. */
 gno_status gnoi_add_shape(gnoi_scene_reader *reader, const gnoi_object_entry *entry);

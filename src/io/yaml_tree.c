@@ -203,6 +203,15 @@ gno_status gnoi_yaml_fail(const gnoi_yaml *tree, const gnoi_yaml_node *node, gno
     return gno_context_fail(tree->context, status, message);
 }
 
+void gnoi_yaml_warn(const gnoi_yaml *tree, const gnoi_yaml_node *node, const char *what)
+{
+    char message[MESSAGE];
+    begin_message(message, tree, node);
+    if (node->parent) append(message, sizeof message, ": ");
+    append(message, sizeof message, what);
+    gno_context_log(tree->context, GNO_LOG_WARNING, message);
+}
+
 gno_status gnoi_yaml_fail_missing(const gnoi_yaml *tree, const gnoi_yaml_node *mapping, const char *key, const char *what)
 {
     char message[MESSAGE];

@@ -63,6 +63,9 @@ gno_status gnoi_yaml_fail(const gnoi_yaml *tree, const gnoi_yaml_node *node, gno
 #endif
     ;
 
+/* Logs the same as a warning. */
+void gnoi_yaml_warn(const gnoi_yaml *tree, const gnoi_yaml_node *node, const char *what);
+
 /* Fails at a key that a mapping does not have: "FILE:LINE: mapping.path.key: what". */
 gno_status gnoi_yaml_fail_missing(const gnoi_yaml *tree, const gnoi_yaml_node *mapping, const char *key, const char *what);
 

@@ -105,21 +105,20 @@ static void make_cell(const gnoi_image *image, int l, int x, int y)
 {
     const gnoi_image_level *level = &image->level[l], *below = &image->level[l - 1];
     size_t at = (size_t)y * (size_t)level->width + (size_t)x;
-    float value[4][4], spread[4], widest = 0;
-    double sum[4] = {0, 0, 0, 0}, total = 0;
-    int count = 0;
-    for (int j = 2 * y; j <= 2 * y + 1 && j < below->height; j++)
-        for (int i = 2 * x; i <= 2 * x + 1 && i < below->width; i++, count++) {
-            double weight = (double)side(image->width, l - 1, i) * side(image->height, l - 1, j);
-            gnoi_image_value(image, l - 1, i, j, value[count]);
-            spread[count] = below->spread ? below->spread[(size_t)j * (size_t)below->width + (size_t)i] : 0;
-            for (int k = 0; k < 4; k++)
-                sum[k] += weight * (double)value[count][k];
-            total += weight;
-        }
+    int columns = 2 * x + 1 < below->width ? 2 : 1, rows = 2 * y + 1 < below->height ? 2 : 1;
+    float value[4][4], spread[4], weight[4], total = 0, widest = 0;
+    for (int c = 0; c < 4; c++) {
+        int i = 2 * x + c % 2, j = 2 * y + c / 2, is_there = c % 2 < columns && c / 2 < rows;
+        i = is_there ? i : 2 * x;
+        j = is_there ? j : 2 * y;
+        gnoi_image_value(image, l - 1, i, j, value[c]);
+        spread[c] = below->spread ? below->spread[(size_t)j * (size_t)below->width + (size_t)i] : 0;
+        weight[c] = is_there ? (float)side(image->width, l - 1, i) * (float)side(image->height, l - 1, j) : 0;
+        total += weight[c];
+    }
     for (int k = 0; k < 4; k++)
-        level->mean[at][k] = (float)(sum[k] / total);
-    for (int c = 0; c < count; c++)
+        level->mean[at][k] = (weight[0] * value[0][k] + weight[1] * value[1][k] + weight[2] * value[2][k] + weight[3] * value[3][k]) / total;
+    for (int c = 0; c < 4; c++)
         for (int k = 0; k < 4; k++) {
             float far_off = fabsf(value[c][k] - level->mean[at][k]) + spread[c];
             widest = far_off > widest ? far_off : widest;

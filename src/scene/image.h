@@ -44,7 +44,7 @@ static inline void gnoi_image_value(const gnoi_image *image, int level, int colu
         value[3] = m[3];
     } else {
         const unsigned char *b = image->bytes[at];
-        float alpha = (float)b[3] * (1.0f / 255.0f);
+        float alpha = image->has_alpha ? (float)b[3] * (1.0f / 255.0f) : 1;
         value[0] = image->decode[b[0]] * alpha;
         value[1] = image->decode[b[1]] * alpha;
         value[2] = image->decode[b[2]] * alpha;

@@ -352,7 +352,8 @@ static void test_material_values(void **state)
     check_vector(m.diffuse, 0, 1, 0, 0);
     assert_true(has_warning(b, "a.mtl:3: d: 1.5 is taken as 1"));
     assert_true(has_warning(b, "a.mtl:7: Ks: only RGB colours are read"));
-    assert_true(has_warning(b, "a.mtl: 3 textures are not drawn in this version: plain colours are used"));
+    assert_true(has_warning(b, "a.mtl:4: cannot open "));
+    assert_true(has_warning(b, "c.png: No such file or directory: drawn without it"));
 }
 
 static void test_material_errors(void **state)
