@@ -304,6 +304,29 @@ GNO_API gno_status gno_scene_set_material_name(gno_scene *scene, int index, cons
  * checked here; planarity and area when the scene is prepared. Errors: MEMORY, ARGUMENT, LIMIT; the scene is unchanged then. */
 GNO_API gno_status gno_scene_add_mesh(gno_scene *scene, const gno_mesh_def *mesh, size_t *first_polygon);
 
+/* Fractal ground: a polygon whose centre and edge middles are moved along its normal by random heights, each of the quadrilaterals so
+ * made again, and so on (8.5). Edges decide by themselves whether and how they are divided: there are no cracks where levels differ,
+ * nor between terrains of one plane, seed, height, roughness and viewer that share an edge. */
+typedef struct gno_terrain {
+    size_t corner_count; /* 3 to 65536 */
+    const double *corners; /* 3 each: a convex polygon, counterclockwise seen from above */
+    double height;       /* largest displacement of the first division, >= 0; default 1 */
+    double roughness;    /* largest displacement of each division over that of the one before, in (0,1]; default 0.5 */
+    int levels;          /* divisions at most, 0 to 14; default 6 */
+    int least_levels;    /* divisions everywhere, however far; default 2 */
+    double detail;       /* 0 (default): all levels everywhere. Else an edge is divided while it is longer than this times its distance
+                            from the viewer */
+    double viewer[3];    /* scene space */
+    unsigned seed;       /* default 0 */
+} gno_terrain;
+
+GNO_API gno_terrain gno_terrain_default(void);
+
+/* Adds a terrain as triangles, with texture coordinates from (0,0) to (1,1) over the polygon's extent, its first side along (1,0).
+ * look: name, material, shading, averaging, transform and priority as of a mesh, its arrays unread; NULL: the defaults. The same
+ * definition gives the same triangles on every machine. Errors: MEMORY, ARGUMENT, LIMIT; the scene is unchanged then. */
+GNO_API gno_status gno_scene_add_terrain(gno_scene *scene, const gno_terrain *terrain, const gno_mesh_def *look, size_t *first_polygon);
+
 GNO_API gno_status gno_scene_set_camera(gno_scene *scene, const gno_camera *camera);
 GNO_API gno_camera gno_scene_camera(const gno_scene *scene);
 GNO_API gno_status gno_scene_set_image(gno_scene *scene, const gno_image_def *image);
@@ -454,6 +477,17 @@ typedef struct gno_span_part {
  * `shadows` is sorted by x0 in place. parts needs room for 2 count + 1. Returns the number of parts: 0 for an
  * empty span (x1 <= x0). No allocation, no failure; values must not be NaN. */
 GNO_API size_t gno_span_split(double x0, double x1, gno_shadow_interval *shadows, size_t count, gno_span_part *parts);
+
+/* ---- fractal dimension -------------------------------------------------------------------------------------------- */
+
+/* H = log G / log A of a set of points (3 coordinates each), by counting boxes: the boxes that hold points grow G times in number when
+ * they are made A times smaller. Boxes are cubes, the first the set's largest extent wide, each next level `magnification` A >= 2
+ * times smaller, down to `levels` in [1, 52 / log2 A]; H is the slope of the straight line through (log A^k, log boxes at level k), k from
+ * first_level in [0, levels) to levels. The first levels count the boxes of a set's outline, those where the points are sparser than the boxes the points: choose the
+ * levels between. A set without extent has dimension 0. Errors: MEMORY, ARGUMENT (NULL, no points, coordinates
+ * that are not finite, levels out of range). */
+GNO_API gno_status gno_fractal_dimension(gno_context *context, size_t count, const double *points, int magnification, int first_level,
+                                         int levels, double *dimension);
 
 #ifdef __cplusplus
 }

@@ -38,14 +38,13 @@ static const gnoi_field fields[FIELDS] = {
 
 /* ---- one entry ---------------------------------------------------------------------------------------------------------- */
 
-/* Exactly one of mesh, polygon, sphere; keys that belong to another kind are refused. */
+/* Exactly one of mesh, polygon, sphere, terrain; keys that belong to another kind are refused. */
 static gno_status check_kind(const gnoi_yaml *yaml, const gnoi_yaml_node *node, const gnoi_yaml_node *const *seen)
 {
-    static const char *const articles[] = {"a mesh", "a polygon", "a sphere"};
+    static const char *const articles[] = {"a mesh", "a polygon", "a sphere", "a terrain"};
     static const int mesh_only[] = {CREASE, NORMALS, WEIGHTING};
     int kind = -1;
-    if (seen[TERRAIN]) return gnoi_yaml_fail(yaml, seen[TERRAIN], GNO_ERROR_INPUT, "terrain is not supported in this version");
-    for (int i = MESH; i <= SPHERE; i++) {
+    for (int i = MESH; i <= TERRAIN; i++) {
         if (!seen[i]) continue;
         if (kind >= 0) {
             return gnoi_yaml_fail(yaml, seen[i], GNO_ERROR_INPUT, "stands beside %s, an object is only one of the two",
@@ -53,13 +52,14 @@ static gno_status check_kind(const gnoi_yaml *yaml, const gnoi_yaml_node *node, 
         }
         kind = i;
     }
-    if (kind < 0) return gnoi_yaml_fail(yaml, node, GNO_ERROR_INPUT, "needs one of mesh, polygon, sphere");
+    if (kind < 0) return gnoi_yaml_fail(yaml, node, GNO_ERROR_INPUT, "needs one of mesh, polygon, sphere, terrain");
     if (seen[HOLES] && kind != POLYGON) {
         return gnoi_yaml_fail(yaml, seen[HOLES], GNO_ERROR_INPUT, "has no meaning for %s", articles[kind]);
     }
     for (int i = 0; i < 3 && kind != MESH; i++) {
         const gnoi_yaml_node *given = seen[mesh_only[i]];
-        if (given) return gnoi_yaml_fail(yaml, given, GNO_ERROR_INPUT, "has no meaning for %s", articles[kind]);
+        int averaged = kind == TERRAIN && mesh_only[i] != NORMALS; /* its normals always are */
+        if (given && !averaged) return gnoi_yaml_fail(yaml, given, GNO_ERROR_INPUT, "has no meaning for %s", articles[kind]);
     }
     return GNO_OK;
 }
@@ -90,6 +90,7 @@ static gno_status read_entry(gnoi_scene_reader *reader, const gnoi_yaml_node *no
     entry->polygon = seen[POLYGON];
     entry->holes = seen[HOLES];
     entry->sphere = seen[SPHERE];
+    entry->terrain = seen[TERRAIN];
     entry->detail_node = seen[DETAIL_OF];
     return status;
 }

@@ -1,4 +1,4 @@
-/* scene_shape.c -- the polygons of one object: a polygon with holes, a tessellated sphere, or a mesh file.
+/* scene_shape.c -- the polygons of one object: a polygon with holes, a tessellated sphere, a terrain, or a mesh file.
  * Place: scene_object.c -> here -> gno_scene_add_mesh or gnoi_mesh_load.
  */
 #include "io/mesh_file.h"
@@ -223,5 +223,11 @@ static gno_status add_mesh(gnoi_scene_reader *reader, const gnoi_object_entry *e
 gno_status gnoi_add_shape(gnoi_scene_reader *reader, const gnoi_object_entry *entry)
 {
     if (entry->polygon) return add_polygon(reader, entry);
+    if (entry->terrain) {
+        gno_mesh_def look = def_for(entry);
+        look.crease = entry->crease;
+        look.weighting = (gno_weighting)entry->weighting;
+        return gnoi_add_terrain(reader, entry->terrain, &look);
+    }
     return entry->sphere ? add_sphere(reader, entry) : add_mesh(reader, entry);
 }

@@ -5,7 +5,7 @@
  *   scene_yaml.c    whole file: order of sections, version, image, ambient
  *   scene_camera.c  camera            scene_material.c  materials; scene_texture.c: their texture and bump
  *   scene_light.c   lights            scene_object.c    objects: reading, names, details' priorities
- *                                     scene_shape.c     one object's polygons: mesh file, polygon, sphere
+ *                                     scene_shape.c     one object's polygons: mesh file, polygon, sphere, terrain
  *                                     scene_transform.c transform lists
  *   scene_load.c    gno_scene_load; scene_mesh.c: a mesh file as a scene
  * Everything is read and checked before the first mesh file is opened.
@@ -43,7 +43,7 @@ typedef struct gnoi_scene_reader {
 /* One entry of `objects`, checked. */
 typedef struct gnoi_object_entry {
     const gnoi_yaml_node *node;
-    const gnoi_yaml_node *polygon, *holes, *sphere, *mesh_node; /* one kind of object is not NULL */
+    const gnoi_yaml_node *polygon, *holes, *sphere, *terrain, *mesh_node; /* one kind of object is not NULL */
     const gnoi_yaml_node *detail_node;                          /* of detail_of, or NULL */
     const char *mesh, *name, *material_name, *detail_of;
     int material; /* scene index, -1: none named */
@@ -77,6 +77,9 @@ gno_status gnoi_read_scale(const gnoi_yaml *yaml, const gnoi_yaml_node *node, do
 
 /* Adds the polygons of one object, its priority settled. */
 gno_status gnoi_add_shape(gnoi_scene_reader *reader, const gnoi_object_entry *entry);
+
+/* scene_terrain.c: reads the mapping `terrain` and adds it; look: all else that the object says. */
+gno_status gnoi_add_terrain(gnoi_scene_reader *reader, const gnoi_yaml_node *node, const gno_mesh_def *look);
 
 /* One warning about all that is not drawn yet, if there is anything. */
 void gnoi_warn_undrawn(const gnoi_scene_reader *reader);
