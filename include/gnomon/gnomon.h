@@ -419,6 +419,9 @@ typedef struct gno_layers {
 
 /* No layer wanted. */
 GNO_API gno_layers gno_layers_default(void);
+/* scanline: exact spans on sample lines, the fastest; weiler_atherton: visible pieces as polygons (gnomon_pieces.h), painted with exact
+ * area coverage and shaded alike. `lines`, `base_lines` and `refine_above` concern the first alone. */
+typedef enum gno_engine { GNO_ENGINE_SCANLINE = 0, GNO_ENGINE_WEILER_ATHERTON = 1 } gno_engine;
 
 typedef struct gno_render_def {
     int lines;      /* sample lines per pixel row at the finest; default 18 */
@@ -428,6 +431,7 @@ typedef struct gno_render_def {
     int threads;    /* 0 (default): one per processor */
     gno_terminator terminator;
     const gno_layers *layers; /* filled beside the picture; NULL (default): none */
+    gno_engine engine; /* default scanline */
 } gno_render_def;
 
 GNO_API gno_render_def gno_render_def_default(void);

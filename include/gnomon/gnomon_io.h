@@ -1,6 +1,6 @@
-/* gnomon_io.h -- files for gnomon: scenes and meshes in, pictures out. Library libgnomon-io.
+/* gnomon_io.h -- files for gnomon: scenes and meshes in, pictures and drawings out. Library libgnomon-io.
  *
- * Needs libyaml, assimp, libpng and OpenEXRCore. Compiles as C89 to C17 and C++98 to C++17.
+ * Needs libyaml, assimp, libpng, OpenEXRCore and cairo. Compiles as C89 to C17 and C++98 to C++17.
  * All messages are kept in the context, as gnomon.h says: "FILE:LINE: key: what is wrong".
  */
 #ifndef GNOMON_GNOMON_IO_H
@@ -89,6 +89,39 @@ GNO_API gno_status gno_lit_table_write(const gno_scene *scene, const char *path,
  * faces without) or .geojson, .json (a FeatureCollection of Polygons, three coordinates, with the properties polygon, object, light,
  * sample, side, area, passed). Errors: MEMORY, ARGUMENT (unknown extension), FILE. */
 GNO_API gno_status gno_pieces_write(const gno_scene *scene, const char *path, const gno_lit_result *results, size_t count);
+
+/* ---- drawings --------------------------------------------------------------------------------------------------------- */
+
+typedef enum gno_vector_format { GNO_VECTOR_AUTO = 0, GNO_VECTOR_SVG, GNO_VECTOR_PDF } gno_vector_format;
+
+/* Lines on a drawing; each includes those before it. An edge is drawn where it is visible. */
+typedef enum gno_vector_edges {
+    GNO_EDGES_NONE = 0,
+    GNO_EDGES_SILHOUETTE, /* edges of one polygon alone, and between one that faces the eye and one that does not */
+    GNO_EDGES_VISIBLE,    /* edges at which planes meet at more than the crease angle */
+    GNO_EDGES_ALL         /* outlines of all pieces: shadows, and where polygons cross or hide each other */
+} gno_vector_edges;
+
+typedef struct gno_vector_def {
+    gno_vector_format format;  /* AUTO (default): by the path's extension, .svg or .pdf; "-" needs one given */
+    gno_vector_edges edges;    /* default none */
+    double edge_width;         /* pixels of the picture, > 0; default 1 */
+    double edge_colour[3];     /* linear RGB; default 0 */
+    double crease;             /* degrees, in [0,180]; default 1 */
+    int background;            /* 1 (default): the picture's background fills what no polygon covers; 0: nothing there */
+    int underlay;              /* 1 (default): shapes are drawn once more beneath, with a rim, so that no viewer shows seams */
+    int digits;                /* of picture coordinates after the point, 0 to 9; default 4 */
+    double exposure;           /* factor on all colours; default 1 */
+    int threads;               /* as in gno_render_def; the file is the same */
+    const char *title;         /* UTF-8; NULL (default): none */
+} gno_vector_def;
+
+GNO_API gno_vector_def gno_vector_def_default(void);
+
+/* Draws what the camera sees as shapes: one for each polygon seen and each set of lights that reaches parts of it, filled with its
+ * mean colour (docs/api.md, "Drawings"). def may be NULL. The file appears whole or not at all; path "-" is standard output.
+ * Errors: MEMORY, ARGUMENT, LIMIT, FILE, CANCELLED. */
+GNO_API gno_status gno_vector_write(gno_scene *scene, const char *path, const gno_vector_def *def);
 
 #ifdef __cplusplus
 }

@@ -123,6 +123,18 @@ typedef struct gno_visible_summary {
  * Errors: MEMORY, ARGUMENT, LIMIT, CANCELLED; *pieces is NULL then. */
 GNO_API gno_status gno_visible_pieces(gno_scene *scene, const gno_visible_def *def, gno_pieces **pieces, gno_visible_summary *summary);
 
+/* ---- pieces in the picture ---------------------------------------------------------------------------------------- */
+
+/* Where the scene's camera shows points: homogeneous picture coordinates X, Y, W, 3 for each of `count` points (3 values each, scene
+ * space). The point appears at (X/W, Y/W) in pixels from the picture's top left corner; W is 1 for an orthographic camera, for a
+ * perspective one the depth, which is not positive where the point is not before the eye. Errors: ARGUMENT. */
+GNO_API gno_status gno_project_points(const gno_scene *scene, size_t count, const double *points, double *picture);
+
+/* The colour of each visible piece on the whole: 3 linear values each, the mean of what the camera shows of it, by the lighting model
+ * and the lights that reach the piece. Zeros for a piece that covers nothing of the picture. threads as in gno_render_def.
+ * Errors: MEMORY, ARGUMENT (pieces of another scene), LIMIT, CANCELLED. */
+GNO_API gno_status gno_pieces_colours(gno_scene *scene, const gno_pieces *pieces, int threads, double *rgb);
+
 #ifdef __cplusplus
 }
 #endif

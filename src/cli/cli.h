@@ -24,7 +24,7 @@ typedef struct command {
     int (*run)(int argc, char **argv); /* arguments after the command's name; returns the exit status */
 } command;
 
-extern const command command_render, command_info, command_matrix, command_lit;
+extern const command command_render, command_vector, command_lit, command_info, command_matrix;
 
 /* One line on standard error, with the program's name in front. */
 void say(const char *format, ...) CLI_PRINTF(1, 2);

@@ -13,7 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
-static const command *const commands[] = {&command_render, &command_lit, &command_info, &command_matrix};
+static const command *const commands[] = {&command_render, &command_vector, &command_lit, &command_info, &command_matrix};
 
 enum { COMMANDS = sizeof commands / sizeof commands[0] };
 
@@ -62,6 +62,7 @@ static int help(void)
            "examples:\n"
            "  gnomon render bunny.obj                        a first look: bunny.png\n"
            "  gnomon render town.yaml -o town.exr --size 1920x1080\n"
+           "  gnomon vector town.yaml -o town.svg            the same as shapes, without hidden parts\n"
            "  gnomon lit town.yaml -o lit.csv                how much of every polygon each light reaches\n"
            "  gnomon info town.yaml                          what is in it, and what is wrong with it\n"
            "  gnomon matrix town.yaml -o town.mtx            which polygons shade which\n\n"

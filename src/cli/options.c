@@ -186,6 +186,18 @@ int parse_real(const char *text, double *value)
     return 1;
 }
 
+int parse_size(const char *text, int *width, int *height)
+{
+    char copy[32];
+    snprintf(copy, sizeof copy, "%s", text);
+    char *x = strpbrk(copy, "xX");
+    if (x == NULL || strlen(text) >= sizeof copy) {
+        return 0;
+    }
+    *x = '\0';
+    return parse_int(copy, 1, GNO_MAX_IMAGE_SIDE, width) && parse_int(x + 1, 1, GNO_MAX_IMAGE_SIDE, height);
+}
+
 int parse_setting(char *text, gno_setting *setting)
 {
     char *equals = strchr(text, '=');

@@ -43,6 +43,9 @@ const char *nearest_name(const char *name, const char *const *names, int count);
 int parse_int(const char *text, int least, int most, int *value);
 int parse_real(const char *text, double *value);
 
+/* WIDTHxHEIGHT, each from 1 to GNO_MAX_IMAGE_SIDE. */
+int parse_size(const char *text, int *width, int *height);
+
 /* KEY=VALUE, cut in place at the first equals sign; the setting points into the text. */
 int parse_setting(char *text, gno_setting *setting);
 

@@ -70,6 +70,20 @@ int output_check_place(const char *path)
     return missing ? EXIT_FAILED : EXIT_DONE;
 }
 
+char *output_default(const char *scene_path, const char *extension)
+{
+    const char *slash = strrchr(scene_path, '/');
+    const char *name = slash != NULL ? slash + 1 : scene_path;
+    const char *dot = strrchr(name, '.');
+    const size_t length = dot != NULL && dot > name ? (size_t)(dot - name) : strlen(name), end = strlen(extension) + 1;
+    char *path = malloc(length + end);
+    if (path != NULL) {
+        memcpy(path, name, length);
+        memcpy(path + length, extension, end);
+    }
+    return path;
+}
+
 int outputs_check(outputs *files, int depth, const char *command_name)
 {
     int standard = 0, deep = 0;

@@ -21,6 +21,9 @@ int outputs_check(outputs *files, int depth, const char *command_name);
 /* Whether a file can come to be under this name; says so when not. Returns an exit status. */
 int output_check_place(const char *path);
 
+/* The scene's name with another extension, without its folder: folder/town.yaml -> town.png. To be freed; NULL when memory fails. */
+char *output_default(const char *scene_path, const char *extension);
+
 /* Standard output, a pipe or a device: takes the bytes as they come and leaves nothing half done in a folder. */
 int output_is_stream(const char *path);
 

@@ -29,7 +29,8 @@ static const option options[] = {
     [DEPTH] = {"depth", 0, "BITS", "8 or 16 for PNG (8), 16 or 32 for EXR (16), 32 for PFM"},
     [TERMINATOR] = {"terminator", 0, "KIND", "shadows on smooth-shaded meshes: exact, as the flat facets cast\n"
                                              "them (default), or smooth"},
-    [ENGINE] = {"engine", 0, "NAME", "scanline (default)"},
+    [ENGINE] = {"engine", 0, "NAME", "scanline (default); weiler-atherton: visible pieces as polygons, painted\n"
+                                 "with exact coverage (--lines has no meaning there)"},
     [AOV] = {"aov", 0, "LIST", "layers beside the picture in .exr files, with commas between:\n" LAYER_NAMES},
     [RANKS] = {"ranks", 0, "N", "pairs of id and coverage in each pixel for the layers polygon,\n"
                                 "object and material (6)"},
@@ -76,18 +77,6 @@ static int help(void)
     return close_output();
 }
 
-static int parse_size(const char *text, job *work)
-{
-    char copy[32];
-    snprintf(copy, sizeof copy, "%s", text);
-    char *x = strpbrk(copy, "xX");
-    if (x == NULL || strlen(text) >= sizeof copy) {
-        return 0;
-    }
-    *x = '\0';
-    return parse_int(copy, 1, GNO_MAX_IMAGE_SIDE, &work->width) && parse_int(x + 1, 1, GNO_MAX_IMAGE_SIDE, &work->height);
-}
-
 static int parse_lines(const char *text, gno_render_def *def)
 {
     char copy[32];
@@ -118,7 +107,7 @@ static int take_option(job *work, int id, char *value)
         work->files.paths[work->files.count++] = value;
         return -1;
     case SIZE:
-        return parse_size(value, work) ? -1
+        return parse_size(value, &work->width, &work->height) ? -1
                                        : usage("render", "--size %s: not WIDTHxHEIGHT, each from 1 to %d", value, GNO_MAX_IMAGE_SIDE);
     case LINES:
         return parse_lines(value, &work->def)
@@ -139,7 +128,10 @@ static int take_option(job *work, int id, char *value)
         return strcmp(value, "exact") == 0 || strcmp(value, "smooth") == 0 ? -1
                                                                            : usage("render", "--terminator %s: not one of exact, smooth", value);
     case ENGINE:
-        return strcmp(value, "scanline") == 0 ? -1 : usage("render", "--engine %s: not one of scanline", value);
+        work->def.engine = strcmp(value, "weiler-atherton") == 0 ? GNO_ENGINE_WEILER_ATHERTON : GNO_ENGINE_SCANLINE;
+        return strcmp(value, "scanline") == 0 || strcmp(value, "weiler-atherton") == 0
+                   ? -1
+                   : usage("render", "--engine %s: not one of scanline, weiler-atherton", value);
     case AOV:
         return layers_parse(&work->layers, value, "render");
     case RANKS:
@@ -159,21 +151,6 @@ static int take_option(job *work, int id, char *value)
     default:
         return usage("render", "--%s is not known here", name);
     }
-}
-
-/* folder/town.yaml -> town.png */
-static char *default_output(const char *scene_path)
-{
-    const char *slash = strrchr(scene_path, '/');
-    const char *name = slash != NULL ? slash + 1 : scene_path;
-    const char *dot = strrchr(name, '.');
-    const size_t length = dot != NULL && dot > name ? (size_t)(dot - name) : strlen(name);
-    char *path = malloc(length + sizeof ".png");
-    if (path != NULL) {
-        memcpy(path, name, length);
-        memcpy(path + length, ".png", sizeof ".png");
-    }
-    return path;
 }
 
 /* Returns an exit status, or -1 to go on. */
@@ -200,7 +177,7 @@ static int read_arguments(job *work, int argc, char **argv)
         return usage("render", "no scene given");
     }
     if (work->files.count == 0) {
-        work->default_output = default_output(work->scene_path);
+        work->default_output = output_default(work->scene_path, ".png");
         if (work->default_output == NULL) {
             say("out of memory");
             return EXIT_FAILED;

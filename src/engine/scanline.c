@@ -3,7 +3,7 @@
  * prepare (scene) -> shadow matrix by light (shadow) -> projection and bins (scan) -> tiles (engine/tile.h) -> picture.
  */
 #include "base/parallel.h"
-#include "engine/tile.h"
+#include "engine/job.h"
 #include "scene/validate.h"
 #include <string.h>
 
@@ -16,6 +16,7 @@ gno_render_def gno_render_def_default(void)
     def.threads = 0;
     def.terminator = GNO_TERMINATOR_EXACT;
     def.layers = NULL;
+    def.engine = GNO_ENGINE_SCANLINE;
     return def;
 }
 
@@ -57,8 +58,12 @@ static gno_status check_def(gno_context *context, const gno_render_def *def)
                          def->base_lines);
     if (!(def->refine_above >= 0))
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "refine_above: %g is negative", def->refine_above);
+    if (def->engine != GNO_ENGINE_SCANLINE && def->engine != GNO_ENGINE_WEILER_ATHERTON)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "engine: %d is none", (int)def->engine);
     if (def->threads < 0 || def->threads > GNO_MAX_THREADS)
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "threads: %d is not between 0 and %d", def->threads, GNO_MAX_THREADS);
+    if (def->layers && def->engine != GNO_ENGINE_SCANLINE)
+        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "layers: only the scan-line engine makes them");
     return def->layers ? check_layers(context, def->layers) : GNO_OK;
 }
 
@@ -172,58 +177,64 @@ static double lap(double *from)
     return seconds;
 }
 
-/* Tables that all tiles read, and the tiles. */
-static gno_status draw_frame(gnoi_frame_job *frame, int threads, gno_stats *stats)
+gno_status gnoi_frame_job_make(gno_scene *scene, const gno_render_def *def, gnoi_frame_job *frame, gno_stats *stats)
 {
-    const gno_scene *scene = frame->scene;
-    size_t lamps = (size_t)frame->lamp_count;
-    uint32_t *lamp_light = frame->layers ? map_lamps(scene, lamps) : NULL;
-    gno_status status = GNO_ERROR_MEMORY;
-    frame->lamp_light = lamp_light;
+    gno_status status;
+    int threads = gnoi_thread_count(def->threads);
+    double t = gnoi_now();
+    memset(frame, 0, sizeof *frame);
+    frame->scene = scene;
+    frame->def = *def;
+    frame->layers = def->layers;
+    status = gnoi_scene_prepare(scene, threads);
+    stats->prepare_seconds = lap(&t);
+    if (status)
+        return status;
+    frame->view = gnoi_view_make(&scene->camera, &scene->image, scene->prepared.scale);
+    status = gnoi_shadow_cache_build(scene, &frame->view, threads);
+    stats->shadow_seconds = lap(&t);
+    if (status)
+        return status;
+    frame->lamps = scene->shadows->lamps;
+    frame->casters = scene->shadows->casters;
+    frame->lamp_count = (int)scene->shadows->lamp_count;
+    frame->tinted = is_tinted(scene);
     frame->tones = make_tones(scene);
     for (size_t i = 0; frame->tones && i < scene->material_count; i++)
         frame->textured |= frame->tones[i].textured;
-    if (frame->tones && (lamp_light || !frame->layers))
-        status = render_tiles(frame, threads, stats);
-    gnoi_free(scene->context, frame->tones, scene->material_count, sizeof *frame->tones);
-    gnoi_free(scene->context, lamp_light, lamps, sizeof *lamp_light);
+    frame->lamp_light = frame->layers ? map_lamps(scene, (size_t)frame->lamp_count) : NULL;
+    if (!frame->tones || (frame->layers && !frame->lamp_light))
+        return GNO_ERROR_MEMORY;
+    status = gnoi_bins_build(scene, &frame->view, def->lines, threads, &frame->bins);
+    stats->project_seconds = lap(&t);
     return status;
+}
+
+void gnoi_frame_job_free(gnoi_frame_job *frame)
+{
+    gno_context *context = frame->scene->context;
+    gnoi_free(context, frame->tones, frame->scene->material_count, sizeof *frame->tones);
+    gnoi_free(context, frame->lamp_light, (size_t)frame->lamp_count, sizeof *frame->lamp_light);
+    gnoi_bins_free(context, &frame->bins);
 }
 
 static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
 {
     gnoi_frame_job frame;
-    gno_status status;
-    int threads = gnoi_thread_count(def->threads);
-    double t = gnoi_now(), start = t;
-    memset(&frame, 0, sizeof frame);
-    status = gnoi_scene_prepare(scene, threads);
-    stats->prepare_seconds = lap(&t);
-    if (status)
-        return status;
-    frame.view = gnoi_view_make(&scene->camera, &scene->image, scene->prepared.scale);
-    status = gnoi_shadow_cache_build(scene, &frame.view, threads);
-    stats->shadow_seconds = lap(&t);
-    if (status)
-        return status;
-    frame.scene = scene;
-    frame.def = *def;
-    frame.lamps = scene->shadows->lamps;
-    frame.casters = scene->shadows->casters;
-    frame.lamp_count = (int)scene->shadows->lamp_count;
-    frame.tinted = is_tinted(scene);
+    double start = gnoi_now(), t;
+    gno_status status = gnoi_frame_job_make(scene, def, &frame, stats);
     frame.rgb = rgb;
-    frame.layers = def->layers;
-    status = gnoi_bins_build(scene, &frame.view, def->lines, threads, &frame.bins);
-    stats->project_seconds = lap(&t);
-    if (!status)
-        status = draw_frame(&frame, threads, stats);
+    t = gnoi_now();
+    if (!status && def->engine == GNO_ENGINE_WEILER_ATHERTON)
+        status = gnoi_paint_visible(scene, &frame, stats);
+    else if (!status)
+        status = render_tiles(&frame, gnoi_thread_count(def->threads), stats);
     stats->scan_seconds = lap(&t);
     stats->total_seconds = t - start;
     stats->polygons = (double)scene->prepared.poly_count;
     stats->lights = frame.lamp_count;
     stats->tiles = (double)frame.bins.tiles_x * frame.bins.tiles_y;
-    gnoi_bins_free(scene->context, &frame.bins);
+    gnoi_frame_job_free(&frame);
     gno_context_memory(scene->context, &stats->peak_memory);
     return status;
 }

@@ -50,7 +50,7 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_free(context, tile->batch.weight, lamps * GNOI_BATCH, sizeof *tile->batch.weight);
 }
 
-static void start_tile(gnoi_tile *tile, size_t index)
+void gnoi_tile_start(gnoi_tile *tile, size_t index)
 {
     const gnoi_frame_job *job = tile->job;
     int tx = (int)(index % (size_t)job->bins.tiles_x), ty = (int)(index / (size_t)job->bins.tiles_x);
@@ -153,7 +153,7 @@ static int plan_refinement(gnoi_tile *tile, int (*need)(const gnoi_tile *tile, i
     return tile->lines.line_count > 0;
 }
 
-static void write_pixels(const gnoi_tile *tile)
+void gnoi_tile_write(const gnoi_tile *tile)
 {
     const gnoi_frame_job *job = tile->job;
     for (int y = 0; y < tile->height; y++) {
@@ -194,7 +194,7 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
     const gnoi_frame_job *job = tile->job;
     const uint32_t *items = job->bins.items + job->bins.start[index];
     size_t count = job->bins.start[index + 1] - job->bins.start[index];
-    start_tile(tile, index);
+    gnoi_tile_start(tile, index);
     gnoi_tile_sort(tile, items, count);
     if (tile->failed)
         return 0;
@@ -207,7 +207,7 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
         gnoi_tile_draw(tile, items, count);
         make_rows(tile);
     }
-    write_pixels(tile);
+    gnoi_tile_write(tile);
     if (job->layers && !tile->failed)
         make_layers(tile, items, count);
     return !tile->failed && !tile->lines.failed;

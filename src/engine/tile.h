@@ -44,7 +44,7 @@ typedef struct gnoi_frame_job {
     int textured; /* some material is */
     float *rgb;
     const gno_layers *layers; /* NULL: none */
-    const uint32_t *lamp_light; /* with layers: the scene's light that a lamp is of */
+    uint32_t *lamp_light; /* with layers: the scene's light that a lamp is of */
 } gnoi_frame_job;
 
 /* Rows of the tile, with one row of apron above and below (the one line next to the tile is made there, to judge its border by). */
@@ -173,6 +173,10 @@ void gnoi_tile_free(gnoi_tile *tile);
 /* Makes tile number `index` and writes it to job->rgb. Returns 0 when memory fails. */
 int gnoi_tile_render(gnoi_tile *tile, size_t index);
 
+/* tile.c: empties the tile for number `index`; its sums of colours over the weights to job->rgb. */
+void gnoi_tile_start(gnoi_tile *tile, size_t index);
+void gnoi_tile_write(const gnoi_tile *tile);
+
 /* tile_scan.c: prepares the order of the bin's polygons; draws them into the lines. */
 void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count);
 void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
@@ -219,6 +223,10 @@ void gnoi_tile_add_lit(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float
 
 /* tile_rows.c: which of its row's base lines a line is; the one line of the apron above is the last, of the apron below the first. */
 int gnoi_tile_base_line(const gnoi_tile *tile, int row, uint32_t line);
+
+/* tile_rows.c: the samples of one pixel of a surface, whose coverage is in tile->cells and, for lamps whose column is to be split,
+ * in tile->lit and tile->lit_colour. Of `columns`, one for each lamp, only the state is read. */
+void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel);
 
 /* tile_shade.c: one sample of a slot: the part of pixel `column` of `row` that `cells` hold, at its middle. The caller has
  * set batch.weight[lamp][batch.count] to the coverage (in lines) that each lamp reaches. tint NULL: the surface with its ambient

@@ -188,8 +188,7 @@ static void sample_lit(gnoi_tile *tile, gnoi_slot *slot, int row, int pixel, int
     gnoi_tile_sample(tile, slot, row, pixel, lit, tint);
 }
 
-/* The samples of one pixel of a surface. */
-static void sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel)
+void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel)
 {
     int lamps = tile->job->lamp_count;
     float cover = tile->cells.length[pixel], *weight = tile->batch.weight + tile->batch.count, all[3] = {cover, cover, cover};
@@ -247,7 +246,7 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
             if (tile->job->layers)
                 gnoi_tile_layers_keep(tile, (uint32_t)(slot - tile->slots), columns, row, pixel);
             if (!tile->fragments.alone)
-                sample_pixel(tile, slot, columns, row, pixel);
+                gnoi_tile_sample_pixel(tile, slot, columns, row, pixel);
         }
     if (!slot->receiver.poly->opaque)
         gnoi_tile_uncover(tile, first, last);

@@ -1,0 +1,318 @@
+/* vector.c -- gnomon vector: what the camera sees as a drawing, SVG or PDF.
+ *
+ * Place: arguments -> settings -> gno_scene_load -> gno_vector_write for every -o.
+ */
+#include "cli/cli.h"
+#include "cli/interrupt.h"
+#include "cli/options.h"
+#include "cli/outputs.h"
+#include "cli/progress.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+enum option_id { OUTPUT, FORMAT, SIZE, EDGES, EDGE_WIDTH, EDGE_COLOUR, CREASE, BACKGROUND, UNDERLAY, DIGITS, TITLE, EXPOSURE, THREADS, SET, QUIET, HELP };
+
+static const option options[] = {
+    [OUTPUT] = {"output", 'o', "FILE", "drawing, by extension: .svg or .pdf; \"-\" is standard output and needs\n"
+                                       "--format; may be given several times; without it the scene's name\n"
+                                       "with .svg, in the current folder"},
+    [FORMAT] = {"format", 0, "NAME", "svg or pdf, whatever the extension"},
+    [SIZE] = {"size", 0, "WxH", "pixels, instead of the scene's"},
+    [EDGES] = {"edges", 0, "NAME", "lines where edges are visible: none (default), silhouette, visible\n"
+                                   "(those and where planes meet), all (outlines of shadows too)"},
+    [EDGE_WIDTH] = {"edge-width", 0, "X", "pixels (1)"},
+    [EDGE_COLOUR] = {"edge-colour", 0, "R,G,B", "linear, as colours in scenes (0,0,0)"},
+    [CREASE] = {"crease", 0, "ANGLE", "planes that meet at less have no edge, degrees (1)"},
+    [BACKGROUND] = {"background", 0, "KIND", "scene (default), or none: nothing is drawn where nothing is seen"},
+    [UNDERLAY] = {"underlay", 0, "KIND", "rims (default): shapes once more beneath, with rims, against seams in\n"
+                                         "viewers; none: each shape once"},
+    [DIGITS] = {"digits", 0, "N", "of coordinates in the SVG after the point, 0 to 9 (4)"},
+    [TITLE] = {"title", 0, "TEXT", "the drawing's title"},
+    [EXPOSURE] = {"exposure", 0, "X", "factor on all colours (1)"},
+    [THREADS] = {"threads", 0, "N", "0, the default: one per processor; the drawing is the same"},
+    [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. camera.eye=[1,2,3]; may be given\n"
+                                    "several times"},
+    [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
+    [HELP] = {"help", 'h', NULL, "this text"},
+};
+
+enum { OPTIONS = sizeof options / sizeof options[0] };
+
+typedef struct job {
+    const char *scene_path;
+    const char *paths[MOST_OUTPUTS];
+    int path_count;
+    char *default_output;
+    gno_setting *settings;
+    size_t setting_count;
+    int width, height; /* 0: the scene's */
+    gno_vector_def def;
+    int quiet;
+} job;
+
+static int help(void)
+{
+    printf("usage: gnomon vector [OPTIONS] SCENE [-o FILE]...\n\n"
+           "Draws what the camera of SCENE sees as filled shapes without hidden parts, one for each polygon and each set of\n"
+           "lights that reaches parts of it. SCENE is a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\n"
+           "options:\n");
+    option_print(options, OPTIONS);
+    printf("\nEach shape of an SVG says where it comes from: data-polygon, data-object, data-material, data-lights, data-area.\n\n"
+           "examples:\n"
+           "  gnomon vector town.yaml -o town.svg -o town.pdf\n"
+           "  gnomon vector town.yaml --edges visible --edge-width 0.7 -o town.svg\n"
+           "  gnomon vector town.yaml -o - --format svg | rsvg-convert -o town.png\n");
+    return close_output();
+}
+
+/* The index of a word in a list that ends with NULL, -1: none of them. */
+static int choose(const char *word, const char *const *words)
+{
+    for (int i = 0; words[i] != NULL; i++) {
+        if (strcmp(word, words[i]) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
+
+static int parse_colour(char *text, double colour[3])
+{
+    char *rest = text;
+    for (int k = 0; k < 3; k++) {
+        char *comma = strchr(rest, ',');
+        if ((comma != NULL) != (k < 2)) {
+            return 0;
+        }
+        if (comma != NULL) {
+            *comma = '\0';
+        }
+        if (!parse_real(rest, &colour[k]) || colour[k] < 0.0) {
+            return 0;
+        }
+        rest = comma + 1;
+    }
+    return 1;
+}
+
+/* Options about edges; returns an exit status, or -1 to go on. */
+static int take_edge_option(job *work, int id, char *value)
+{
+    static const char *const kinds[] = {"none", "silhouette", "visible", "all", NULL};
+    gno_vector_def *def = &work->def;
+    int index;
+    switch (id) {
+    case EDGES:
+        index = choose(value, kinds);
+        def->edges = index >= 0 ? (gno_vector_edges)index : GNO_EDGES_NONE;
+        return index >= 0 ? -1 : usage("vector", "--edges %s: not one of none, silhouette, visible, all", value);
+    case EDGE_WIDTH:
+        return parse_real(value, &def->edge_width) && def->edge_width > 0.0
+                   ? -1
+                   : usage("vector", "--edge-width %s: not a number greater than 0", value);
+    case EDGE_COLOUR:
+        return parse_colour(value, def->edge_colour) ? -1 : usage("vector", "--edge-colour: not three numbers, each 0 or more, with commas");
+    default:
+        return parse_real(value, &def->crease) && def->crease >= 0.0 && def->crease <= 180.0
+                   ? -1
+                   : usage("vector", "--crease %s: not a number from 0 to 180", value);
+    }
+}
+
+/* Returns an exit status, or -1 to go on. */
+static int take_option(job *work, int id, char *value)
+{
+    static const char *const formats[] = {"svg", "pdf", NULL}, *const backgrounds[] = {"none", "scene", NULL},
+                             *const underlays[] = {"none", "rims", NULL};
+    gno_vector_def *def = &work->def;
+    int index;
+    switch (id) {
+    case OUTPUT:
+        if (work->path_count == MOST_OUTPUTS) {
+            return usage("vector", "more than %d outputs", MOST_OUTPUTS);
+        }
+        work->paths[work->path_count++] = value;
+        return -1;
+    case FORMAT:
+        index = choose(value, formats);
+        def->format = index == 0 ? GNO_VECTOR_SVG : GNO_VECTOR_PDF;
+        return index >= 0 ? -1 : usage("vector", "--format %s: not one of svg, pdf", value);
+    case SIZE:
+        return parse_size(value, &work->width, &work->height)
+                   ? -1
+                   : usage("vector", "--size %s: not WIDTHxHEIGHT, each from 1 to %d", value, GNO_MAX_IMAGE_SIDE);
+    case EDGES:
+    case EDGE_WIDTH:
+    case EDGE_COLOUR:
+    case CREASE:
+        return take_edge_option(work, id, value);
+    case BACKGROUND:
+        def->background = choose(value, backgrounds);
+        return def->background >= 0 ? -1 : usage("vector", "--background %s: not one of scene, none", value);
+    case UNDERLAY:
+        def->underlay = choose(value, underlays);
+        return def->underlay >= 0 ? -1 : usage("vector", "--underlay %s: not one of rims, none", value);
+    case DIGITS:
+        return parse_int(value, 0, 9, &def->digits) ? -1 : usage("vector", "--digits %s: not a number from 0 to 9", value);
+    case TITLE:
+        def->title = value;
+        return -1;
+    case EXPOSURE:
+        return parse_real(value, &def->exposure) && def->exposure >= 0.0 ? -1 : usage("vector", "--exposure %s: not a number, 0 or more", value);
+    case THREADS:
+        return parse_int(value, 0, GNO_MAX_THREADS, &def->threads)
+                   ? -1
+                   : usage("vector", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
+    case SET:
+        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("vector", "--set %s: not KEY=VALUE", value);
+    case QUIET:
+        work->quiet = 1;
+        return -1;
+    default:
+        return help();
+    }
+}
+
+static int has_extension(const char *path)
+{
+    const size_t length = strlen(path);
+    return length >= 4 && (strcasecmp(path + length - 4, ".svg") == 0 || strcasecmp(path + length - 4, ".pdf") == 0);
+}
+
+/* Names and places of the files, before the work starts; returns an exit status, or -1 to go on. */
+static int check_outputs(job *work)
+{
+    int standard = 0;
+    if (work->path_count == 0) {
+        work->default_output = output_default(work->scene_path, work->def.format == GNO_VECTOR_PDF ? ".pdf" : ".svg");
+        if (work->default_output == NULL) {
+            say("out of memory");
+            return EXIT_FAILED;
+        }
+        work->paths[work->path_count++] = work->default_output;
+    }
+    for (int i = 0; i < work->path_count; i++) {
+        const char *path = work->paths[i];
+        standard += strcmp(path, "-") == 0;
+        if (work->def.format == GNO_VECTOR_AUTO && strcmp(path, "-") == 0) {
+            return usage("vector", "standard output needs --format svg or --format pdf");
+        }
+        if (work->def.format == GNO_VECTOR_AUTO && !has_extension(path)) {
+            return usage("vector", "%s: the extension is not one of .svg, .pdf", path);
+        }
+    }
+    if (standard > 1) {
+        return usage("vector", "standard output can take one drawing only");
+    }
+    for (int i = 0; i < work->path_count; i++) {
+        const int status = output_check_place(work->paths[i]);
+        if (status != EXIT_DONE) {
+            return status;
+        }
+    }
+    return -1;
+}
+
+/* Returns an exit status, or -1 to go on. */
+static int read_arguments(job *work, int argc, char **argv)
+{
+    option_reader reader = option_reader_make("vector", options, OPTIONS, argc, argv);
+    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
+        if (id == OPTION_WRONG) {
+            return EXIT_USAGE;
+        }
+        if (id == OPTION_OPERAND) {
+            if (work->scene_path != NULL) {
+                return usage("vector", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
+            }
+            work->scene_path = reader.value;
+            continue;
+        }
+        const int status = take_option(work, id, reader.value);
+        if (status >= 0) {
+            return status;
+        }
+    }
+    return work->scene_path != NULL ? check_outputs(work) : usage("vector", "no scene given");
+}
+
+static gno_status load(const job *work, gno_context *context, gno_scene **scene)
+{
+    gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, scene);
+    if (status == GNO_OK && work->width != 0) {
+        gno_image_def image = gno_scene_image(*scene);
+        image.width = work->width;
+        image.height = work->height;
+        status = gno_scene_set_image(*scene, &image);
+    }
+    return status;
+}
+
+/* A signal stops the work between its steps; a file that is being written is finished. */
+static gno_status draw(const job *work, gno_scene *scene)
+{
+    gno_status status = GNO_OK;
+    interrupt_catch();
+    for (int i = 0; i < work->path_count && status == GNO_OK; i++) {
+        status = gno_vector_write(scene, work->paths[i], &work->def);
+    }
+    if (status == GNO_OK && interrupt_signal() != 0) {
+        status = GNO_ERROR_CANCELLED;
+    }
+    return status;
+}
+
+static int run_job(const job *work)
+{
+    progress shown = progress_make(work->quiet);
+    const gno_context_def def = progress_context_def(&shown);
+    gno_context *context = NULL;
+    gno_scene *scene = NULL;
+    int result = EXIT_DONE;
+    if (gno_context_create(&def, &context) != GNO_OK) {
+        say("out of memory");
+        return EXIT_FAILED;
+    }
+    gno_status status = load(work, context, &scene);
+    if (status == GNO_OK) {
+        status = draw(work, scene);
+    }
+    progress_clear(&shown);
+    if (status != GNO_OK && interrupt_signal() != 0) {
+        say("interrupted; nothing half done is left");
+        result = EXIT_SIGNAL + interrupt_signal();
+    } else if (status != GNO_OK) {
+        say("%s", gno_context_message(context));
+        result = EXIT_FAILED;
+    }
+    interrupt_release();
+    gno_scene_destroy(scene);
+    gno_context_destroy(context);
+    return result;
+}
+
+static int run(int argc, char **argv)
+{
+    job work;
+    memset(&work, 0, sizeof work);
+    work.def = gno_vector_def_default();
+    /* No more settings than arguments; one more so that the size is never zero. */
+    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
+    int status = EXIT_FAILED;
+    if (work.settings == NULL) {
+        say("out of memory");
+    } else {
+        status = read_arguments(&work, argc, argv);
+        if (status < 0) {
+            status = run_job(&work);
+        }
+    }
+    free(work.settings);
+    free(work.default_output);
+    return status;
+}
+
+const command command_vector = {"vector", "draw a scene as shapes: SVG, PDF", run};
