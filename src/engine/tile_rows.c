@@ -110,7 +110,7 @@ static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, floa
 }
 
 /* Finds where the column's shadow polygons meet pieces that lie between xa and xb of a sample line. */
-static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb)
+static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb)
 {
     const gnoi_frame_job *job = tile->job;
     return gnoi_column_intervals(job->scene, &job->view, &job->lamps[lamp], &job->casters[lamp], &slot->receiver, column, y,
@@ -121,7 +121,7 @@ static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, const gnoi_col
 
 /* Splits all pieces of a slot in a row under one lamp. Pieces at one height follow each other and share their intervals. soft, a
  * constant at each call: the lamp's shadows weaken with distance. */
-static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, const gnoi_column *column, int lamp, int soft)
+static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, gnoi_column *column, int lamp, int soft)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
     uint32_t p = slot->chain;
@@ -148,7 +148,7 @@ static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, co
     }
 }
 
-static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, const gnoi_column *column, int lamp)
+static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, gnoi_column *column, int lamp)
 {
     if (tile->job->lamps[lamp].softness > 0)
         split_row(tile, row, slot, column, lamp, 1);
@@ -237,7 +237,7 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
         gnoi_tile_veil(tile, row, slot, first, last);
     for (int j = 0; j < lamps && !tile->failed; j++)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
-            split_pieces(tile, row, slot, &columns[j], j);
+            split_pieces(tile, row, slot, &tile->columns[slot->first_column + (uint32_t)j], j);
     for (int pixel = first; pixel <= last && !tile->failed; pixel++)
         if (tile->cells.length[pixel] > 0) {
             tile->row_cover[pixel] += tile->cells.length[pixel];

@@ -3,7 +3,7 @@
  * Place in the data flow: gno_scene -> measure.c (planes, what each polygon is) -> prepare.c (prepared polygons, rings,
  * corners, triangulations; corner_vertex still indexes the scene's positions) -> normals.c (vertex normals of smooth polygons)
  * -> order.c (polygons, vertices and normals numbered as they lie in space; corner_vertex indexes prepared.positions)
- * -> solid.c (connected parts, which of them are closed) -> gnoi_prepared.
+ * -> solid.c (connected parts, which of them are closed) -> cap.c (closes those that stand open on a plane) -> gnoi_prepared.
  */
 #ifndef GNOI_SCENE_PREPARE_H
 #define GNOI_SCENE_PREPARE_H
@@ -40,6 +40,13 @@ gno_status gnoi_order_polygons(gno_scene *scene);
 
 /* Finds the connected parts and which are closed: fills prepared.solids and vertex_solid. vertex_number: the prepared vertex of each scene vertex. */
 gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number);
+
+/* Closes parts that one flat polygon on their outside can close, as a floor does a house: appends caps, sets `closed`, `outwards`
+ * and `cap`. may_close[i]: part i is opaque, seen from both sides and without holes. */
+gno_status gnoi_cap_solids(gno_scene *scene, const unsigned char *may_close);
+
+/* 1 when the point is on the inner side of the plane of the part's cap. */
+int gnoi_cap_inside(const gno_scene *scene, size_t solid, vec3 point);
 
 static inline int gnoi_is_smooth(const gnoi_poly *poly)
 {

@@ -57,6 +57,7 @@ typedef struct gnoi_poly {
  * as the other, so that a path that begins and ends outside crosses as many polygons inwards as outwards. */
 typedef struct gnoi_solid {
     int closed;
+    uint32_t cap; /* the prepared polygon that closes it; GNOI_NONE: none is needed */
     int outwards; /* normals point outwards on the whole (signed volume) */
     double lower[3], upper[3];
 } gnoi_solid;
@@ -65,6 +66,8 @@ typedef struct gnoi_prepared {
     int valid;
     size_t poly_count, poly_capacity;
     gnoi_poly *polys;
+    size_t cap_count; /* caps, behind the polygons in the same array: they close open solids for the shadow passes, and are
+                         neither drawn nor receivers */
     size_t ring_count, ring_capacity;
     uint32_t *ring_corner; /* ring_count+1 offsets into corner arrays; ring_capacity counts its elements */
     size_t corner_count, corner_capacity;
@@ -145,7 +148,8 @@ static inline uint32_t gnoi_solid_of(const gnoi_prepared *prep, const gnoi_poly 
     return prep->vertex_solid[prep->corner_vertex[poly->corner]];
 }
 
-/* 1 when `point` is certainly outside a closed part: the signed crossings of a path from far away sum to zero. */
+/* 1 when `point` is certainly outside a closed part: the signed crossings of a path from far away sum to zero; and, where a cap
+ * closes it, on the cap's inner side. */
 int gnoi_solid_outside(const gno_scene *scene, size_t solid, vec3 point);
 
 /* names.c */

@@ -122,11 +122,27 @@ static void add_prepared(const gno_scene *scene, balance *balances)
     }
 }
 
+/* Only parts that are not closed as they are. */
+static gno_status cap_open(gno_scene *scene, const balance *balances)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    unsigned char *may_close = gnoi_calloc(scene->context, prep->solid_count, 1);
+    gno_status status;
+    if (!may_close)
+        return GNO_ERROR_MEMORY;
+    for (size_t i = 0; i < prep->solid_count; i++)
+        may_close[i] = !balances[i].open && !prep->solids[i].closed;
+    status = gnoi_cap_solids(scene, may_close);
+    gnoi_free(scene->context, may_close, prep->solid_count, 1);
+    return status;
+}
+
 gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number)
 {
     gno_context *context = scene->context;
     gnoi_prepared *prep = &scene->prepared;
     balance *balances;
+    gno_status status = GNO_ERROR_MEMORY;
     prep->vertex_solid = gnoi_malloc(context, prep->vertex_capacity, sizeof *prep->vertex_solid);
     if (!prep->vertex_solid)
         return GNO_ERROR_MEMORY;
@@ -143,11 +159,13 @@ gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number)
         add_prepared(scene, balances);
         for (size_t i = 0; i < prep->solid_count; i++) {
             prep->solids[i].closed = !balances[i].open && balances[i].sum[0] == 0 && balances[i].sum[1] == 0;
+            prep->solids[i].cap = GNOI_NONE;
             prep->solids[i].outwards = balances[i].volume > 0;
         }
+        status = cap_open(scene, balances);
     }
     gnoi_free(context, balances, prep->solid_count, sizeof *balances);
-    return balances && prep->solids ? GNO_OK : GNO_ERROR_MEMORY;
+    return status;
 }
 
 /* Signed crossing of the half line from `point` along the z axis with a polygon, in a frame turned so that the line meets no
@@ -184,10 +202,12 @@ int gnoi_solid_outside(const gno_scene *scene, size_t solid, vec3 point)
     const gnoi_solid *s = &prep->solids[solid];
     vec3 along = v3_unit(v3(0.2718, 0.3141, 0.9102)), u = v3_unit(v3_cross(along, v3(0.577, -0.214, 0.33))), v = v3_cross(along, u);
     int sum = 0;
+    if (s->cap != GNOI_NONE && !gnoi_cap_inside(scene, solid, point))
+        return 0;
     if (point.x < s->lower[0] || point.y < s->lower[1] || point.z < s->lower[2] || point.x > s->upper[0] || point.y > s->upper[1] ||
         point.z > s->upper[2])
         return 1;
-    for (size_t i = 0; i < prep->poly_count; i++) {
+    for (size_t i = 0; i < prep->poly_count + prep->cap_count; i++) {
         const gnoi_poly *poly = &prep->polys[i];
         int c = 0;
         if (gnoi_solid_of(prep, poly) == solid)

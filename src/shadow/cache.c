@@ -40,7 +40,15 @@ static int eye_outside(const gno_scene *scene, size_t solid, const gnoi_view *vi
         if (!(gnoi_form_at(&view->depth, p) > view->near_depth))
             return 0;
     }
-    return 1;
+    return s->cap == GNOI_NONE || v3_dot(v3_from(scene->prepared.polys[s->cap].n), view->forward) > 0;
+}
+
+static int lamp_outside(const gno_scene *scene, size_t solid, const gnoi_lamp *lamp)
+{
+    uint32_t cap = scene->prepared.solids[solid].cap;
+    if (!lamp->directional)
+        return gnoi_solid_outside(scene, solid, lamp->position);
+    return cap == GNOI_NONE || v3_dot(v3_from(scene->prepared.polys[cap].n), lamp->to_light) < 0;
 }
 
 /* Finds which closed solids have lamp and eye outside. */
@@ -50,10 +58,9 @@ static void set_halved(const gno_scene *scene, const gnoi_view *view, gnoi_shado
         if (!scene->prepared.solids[k].closed || !eye_outside(scene, k, view))
             continue;
         for (size_t i = 0; i < cache->lamp_count; i++) {
-            const gnoi_lamp *lamp = &cache->lamps[i];
             /* where shadows weaken with distance each of the two sides of a solid counts for itself */
-            if (!(lamp->softness > 0))
-                cache->halved[i * cache->solid_count + k] = (unsigned char)(lamp->directional || gnoi_solid_outside(scene, k, lamp->position));
+            if (!(cache->lamps[i].softness > 0))
+                cache->halved[i * cache->solid_count + k] = (unsigned char)lamp_outside(scene, k, &cache->lamps[i]);
         }
     }
 }

@@ -10,7 +10,7 @@
 #define REQUESTS 64
 #define REQUEST_SPREAD 16.0f
 
-/* Columns of so many casters are sorted into rows. */
+/* Columns of so many casters or contour edges are sorted into rows. */
 #define LONG_COLUMN 8
 
 /* ---- region on the light's plane --------------------------------------------------------------------------------- */
@@ -184,42 +184,50 @@ struct gnoi_request {
     vec3 centre; /* a point of the region, on the receiver's plane */
 };
 
-static void caster_rows(const gnoi_receiver *r, const gnoi_caster *c, int *first, int *last)
+/* Rows of the receiver's region that a caster or a contour edge may cross. */
+typedef void row_range(const gnoi_receiver *r, const gnoi_columns *columns, uint32_t item, int *first, int *last);
+
+static void caster_rows(const gnoi_receiver *r, const gnoi_columns *columns, uint32_t item, int *first, int *last)
 {
-    *first = gnoi_region_row(r, (double)c->y0);
-    *last = gnoi_region_row(r, (double)c->y1);
+    *first = gnoi_region_row(r, (double)columns->casters[item].y0);
+    *last = gnoi_region_row(r, (double)columns->casters[item].y1);
 }
 
-/* Lists a long column's casters by the rows that they may cross, so that a line looks at those of its row only. */
-static int sort_into_rows(const gnoi_receiver *r, gnoi_columns *columns, gnoi_column *column)
+static void rim_rows(const gnoi_receiver *r, const gnoi_columns *columns, uint32_t item, int *first, int *last)
+{
+    *first = gnoi_region_row(r, columns->rims[item].edge.y);
+    *last = gnoi_region_row(r, columns->rims[item].edge.y1);
+}
+
+/* Lists a long column's items by the rows that they may cross, so that a line looks at those of its row only. */
+static int sort_into_rows(const gnoi_receiver *r, gnoi_columns *columns, row_range *range, uint32_t item, uint32_t count, uint32_t *list)
 {
     size_t rows = (size_t)r->rows, need = rows + 1;
-    const gnoi_caster *casters = columns->casters + column->caster;
     uint32_t *start;
     int first, last;
-    for (uint32_t i = 0; i < column->caster_count; i++) {
-        caster_rows(r, &casters[i], &first, &last);
+    for (uint32_t i = item; i < item + count; i++) {
+        range(r, columns, i, &first, &last);
         need += (size_t)(last - first + 1);
     }
     if (!gnoi_reserve(columns->context, (void **)&columns->rows.items, &columns->rows.capacity, columns->rows.count + need,
                       sizeof *columns->rows.items))
         return 0;
-    column->rows = (uint32_t)columns->rows.count;
-    start = columns->rows.items + column->rows;
+    *list = (uint32_t)columns->rows.count;
+    start = columns->rows.items + *list;
     for (size_t k = 0; k <= rows; k++)
         start[k] = 0;
-    for (uint32_t i = 0; i < column->caster_count; i++) {
-        caster_rows(r, &casters[i], &first, &last);
+    for (uint32_t i = item; i < item + count; i++) {
+        range(r, columns, i, &first, &last);
         for (int k = first; k <= last; k++)
             start[k]++;
     }
     for (size_t k = 1; k < rows; k++)
         start[k] += start[k - 1];
     start[rows] = start[rows - 1]; /* ends so far: filling from the back turns them into beginnings */
-    for (uint32_t i = column->caster_count; i-- > 0;) {
-        caster_rows(r, &casters[i], &first, &last);
+    for (uint32_t i = item + count; i-- > item;) {
+        range(r, columns, i, &first, &last);
         for (int k = first; k <= last; k++)
-            start[rows + 1 + --start[k]] = column->caster + i;
+            start[rows + 1 + --start[k]] = i;
     }
     columns->rows.count += need;
     return 1;
@@ -252,7 +260,10 @@ static int settle(const gnoi_pair *p, gnoi_columns *columns, gnoi_column *column
     column->caster_count = (uint32_t)(columns->caster_count - column->caster);
     columns->ones += column->caster_count + column->rim_count;
     column->state = column->caster_count || column->sheet || p->lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
-    return column->caster_count < LONG_COLUMN || sort_into_rows(p->receiver, columns, column);
+    return (column->caster_count < LONG_COLUMN ||
+            sort_into_rows(p->receiver, columns, caster_rows, column->caster, column->caster_count, &column->rows)) &&
+           (column->rim_count < LONG_COLUMN ||
+            sort_into_rows(p->receiver, columns, rim_rows, column->rim, column->rim_count, &column->rim_rows));
 }
 
 /* One by one: single casters and far sides alike. */
@@ -353,7 +364,8 @@ int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_l
     column->rim = (uint32_t)columns->rim_count;
     column->caster_count = column->rim_count = 0;
     column->sheet = 0;
-    column->rows = GNOI_NONE;
+    column->rows = column->rim_rows = GNOI_NONE;
+    column->known = 0;
     column->state = GNOI_COLUMN_DARK;
     if (!gnoi_pair_make(&p, scene, view, lamp, receiver))
         return 1;

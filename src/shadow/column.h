@@ -53,6 +53,10 @@ typedef struct gnoi_column {
     uint32_t caster, caster_count; /* into gnoi_columns.casters */
     uint32_t rows; /* a long column's casters by pixel row: into gnoi_columns.rows, where offsets into the same list for
                       row 0, 1, ... of the region and an end stand; GNOI_NONE for a short one */
+    uint32_t rim_rows; /* the same of its contour edges */
+    int known;         /* `count` far sides cover the receiver at the picture point (at_x, at_y) */
+    int count;
+    double at_x, at_y;
 } gnoi_column;
 
 struct gnoi_request; /* a receiver waiting for its neighbours, so that they walk the tree together */
@@ -107,10 +111,10 @@ int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_l
 int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns);
 
 /* Collects in columns->intervals where the column's shadow polygons and, for a spot, the dark outside of its cone meet line y
- * between xa and xb (intervals may reach beyond); [xa,xb] lies in the receiver's region. Returns 0 when memory fails. */
+ * between xa and xb (intervals may reach beyond); [xa,xb] lies in the receiver's region. What is found about the line serves the
+ * next one asked for. Returns 0 when memory fails. */
 int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
-                          const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
-                          gnoi_columns *columns);
+                          const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns);
 
 /* What a caster's shadow leaves of a lamp's light, by channel, at the receiver's point seen at (x,y), where the lamp's shadows weaken with
  * distance: 1 - s / (1 + d/D), with s what the caster keeps back and d its distance from the point along the ray. */

@@ -6,25 +6,20 @@
  * point is in the shadow when any far side lies between it and the lamp, and how many do changes only across the sheets' boundary,
  * the contour (silhouette) edges as the lamp sees them, or where a far side passes through the receiver. A receiver
  * that no contour edge crosses and no far side pierces is wholly lit or wholly dark, however many casters are above it.
- * Invariants: the directed boundary edges of every polygon in `far` cancel but for those in `edges`; all edges run so that
+ * Invariants: the directed boundary edges of every polygon in `far` cancel but for those in `contour`; all of these run so that
  * their polygon is to the left on the light's plane (u right, v up).
  */
 #ifndef GNOI_SHADOW_CONTOUR_H
 #define GNOI_SHADOW_CONTOUR_H
 
+#include "scene/boundary.h"
 #include "shadow/tree.h"
-
-typedef struct gnoi_contour_edge {
-    uint32_t from, to; /* prepared vertices */
-    uint32_t poly;     /* the far side that it bounds */
-} gnoi_contour_edge;
 
 typedef struct gnoi_casters {
     gnoi_tree single; /* every other caster */
     gnoi_tree far;    /* far sides of halved solids */
     gnoi_tree rim;    /* the contour edges */
-    size_t edge_count, edge_capacity;
-    gnoi_contour_edge *edges;
+    gnoi_boundary contour;
 } gnoi_casters;
 
 /* halved: see tree.h. */

@@ -147,18 +147,11 @@ static inline int collect(const gno_scene *scene, const gnoi_receiver *receiver,
                           int sources, gnoi_columns *columns)
 {
     float fy = (float)y, fa = (float)xa, fb = (float)xb;
-    uint32_t count = column->caster_count;
-    const uint32_t *listed = NULL;
+    gnoi_row_list list = gnoi_row_list_of(columns, receiver, column->rows, column->caster, column->caster_count, gnoi_region_row(receiver, y));
     size_t before;
-    if (column->rows != GNOI_NONE) {
-        const uint32_t *start = columns->rows.items + column->rows;
-        int row = gnoi_region_row(receiver, y);
-        listed = start + receiver->rows + 1 + start[row];
-        count = start[row + 1] - start[row];
-    }
     columns->interval_count = 0;
-    for (uint32_t i = 0; i < count; i++) {
-        const gnoi_caster *c = &columns->casters[listed ? listed[i] : column->caster + i];
+    for (uint32_t i = 0; i < list.count; i++) {
+        const gnoi_caster *c = &columns->casters[gnoi_row_list_item(&list, i)];
         if (fy < c->y0 || fy > c->y1 || c->x0 > fb || c->x1 < fa)
             continue;
         if (c->edge_count > columns->crossing_capacity &&
@@ -173,8 +166,7 @@ static inline int collect(const gno_scene *scene, const gnoi_receiver *receiver,
 }
 
 int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
-                          const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
-                          gnoi_columns *columns)
+                          const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
 {
     size_t before;
     if (lamp->softness > 0) { /* nothing is halved, there is no sheet */
@@ -185,10 +177,7 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
     }
     if (!collect(scene, receiver, column, y, xa, xb, 0, columns))
         return 0;
-    if (column->sheet) {
-        gnoi_pair p;
-        if (gnoi_pair_make(&p, scene, view, lamp, receiver) && !gnoi_sheet_intervals(&p, view, casters, column, y, xa, xb, columns))
-            return 0;
-    }
+    if (column->sheet && !gnoi_sheet_intervals(scene, view, lamp, casters, receiver, column, y, xa, xb, columns))
+        return 0;
     return !lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns);
 }

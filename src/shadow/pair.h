@@ -50,8 +50,8 @@ gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters,
                                 vec3 centre, gnoi_columns *columns, gnoi_column *column);
 
 /* Appends the intervals of line y that the column's contour edges bound. Returns 0 when memory fails. */
-int gnoi_sheet_intervals(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_column *column, double y,
-                         double xa, double xb, gnoi_columns *columns);
+int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                         const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns);
 
 /* interval.c: appends one interval; transmission NULL: none. Returns 0 when memory fails. */
 int gnoi_interval_add(gnoi_columns *columns, double x0, double x1, const double *transmission);
@@ -66,6 +66,29 @@ static inline int gnoi_region_row(const gnoi_receiver *r, double y)
 {
     double row = y - r->first_row;
     return row < 0 ? 0 : row >= r->rows ? r->rows - 1 : (int)row;
+}
+
+/* What of a column may cross a row: all of it when it is short, else what is listed for the row. */
+typedef struct gnoi_row_list {
+    const uint32_t *items; /* NULL: first, first + 1, ... */
+    uint32_t first, count;
+} gnoi_row_list;
+
+static inline gnoi_row_list gnoi_row_list_of(const gnoi_columns *columns, const gnoi_receiver *r, uint32_t rows, uint32_t first,
+                                             uint32_t count, int row)
+{
+    gnoi_row_list list = {NULL, first, count};
+    if (rows != GNOI_NONE) {
+        const uint32_t *start = columns->rows.items + rows;
+        list.items = start + r->rows + 1 + start[row];
+        list.count = start[row + 1] - start[row];
+    }
+    return list;
+}
+
+static inline uint32_t gnoi_row_list_item(const gnoi_row_list *list, uint32_t i)
+{
+    return list->items ? list->items[i] : list->first + i;
 }
 
 #endif

@@ -107,7 +107,7 @@ static int outside_region(const gnoi_probe *probe, const gnoi_lpoint l[2])
 }
 
 /* Whether the far side that the edge bounds is above the receiver's plane at the edge. */
-static place edge_place(const gnoi_pair *p, const gnoi_contour_edge *e, const vec3 ends[2])
+static place edge_place(const gnoi_pair *p, const gnoi_boundary_edge *e, const vec3 ends[2])
 {
     int touching;
     place at = place_of(p, &p->scene->prepared.polys[e->poly], &touching);
@@ -162,7 +162,7 @@ static gnoi_sheet_state add_rims(const gnoi_pair *p, const gnoi_casters *casters
                       sizeof *columns->rims))
         return GNOI_SHEET_NO_MEMORY;
     for (size_t i = 0; i < columns->found.count; i++) {
-        const gnoi_contour_edge *e = &casters->edges[columns->found.items[i]];
+        const gnoi_boundary_edge *e = &casters->contour.edges[columns->found.items[i]];
         vec3 ends[2] = {v3_from(prep->positions[e->from]), v3_from(prep->positions[e->to])};
         gnoi_lpoint l[2];
         int located = gnoi_frame_locate_on(frame, face, ends, 2, l);
@@ -245,11 +245,11 @@ static void sort_steps(gnoi_step *s, size_t count)
         }
 }
 
-static size_t cross_rims(const gnoi_columns *columns, const gnoi_column *column, double y)
+static size_t cross_rims(const gnoi_columns *columns, const gnoi_row_list *list, double y)
 {
     size_t n = 0;
-    for (uint32_t i = column->rim; i < column->rim + column->rim_count; i++) {
-        const gnoi_rim *r = &columns->rims[i];
+    for (uint32_t i = 0; i < list->count; i++) {
+        const gnoi_rim *r = &columns->rims[gnoi_row_list_item(list, i)];
         if (y < r->edge.y || y >= r->edge.y1)
             continue;
         columns->steps[n].x = r->edge.x + (y - r->edge.y) * r->edge.slope;
@@ -274,22 +274,87 @@ static double widest_middle(const gnoi_step *s, size_t count, double xa, double 
     return middle;
 }
 
-int gnoi_sheet_intervals(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_column *column, double y,
-                         double xa, double xb, gnoi_columns *columns)
+/* In pixels: what passes a point no nearer passes it on a certain side. */
+#define CLEAR 1e-4
+
+/* 1 when some contour edge of the list comes near the upright between (x,ya) and (x,yb), ya <= yb. */
+static int comes_near(const gnoi_columns *columns, const gnoi_row_list *list, double x, double ya, double yb)
 {
-    vec3 point;
-    double x, begin = -HUGE_VAL;
+    for (uint32_t i = 0; i < list->count; i++) {
+        const gnoi_rim *r = &columns->rims[gnoi_row_list_item(list, i)];
+        const gnoi_edge *e = &r->edge;
+        double from, to, x0, x1;
+        if (e->y > yb + CLEAR || e->y1 < ya - CLEAR || (double)r->x0 > x + 1 || (double)r->x1 < x - 1)
+            continue;
+        from = e->y > ya - CLEAR ? e->y : ya - CLEAR;
+        to = e->y1 < yb + CLEAR ? e->y1 : yb + CLEAR;
+        x0 = e->x + (from - e->y) * e->slope;
+        x1 = e->x + (to - e->y) * e->slope;
+        if (e->y == e->y1 || ((x0 < x + CLEAR || x1 < x + CLEAR) && (x0 > x - CLEAR || x1 > x - CLEAR)))
+            return 1;
+    }
+    return 0;
+}
+
+/* Whether what is known at a point of a line near by holds at the same x of line y. */
+static int still_known(const gnoi_receiver *r, const gnoi_columns *columns, const gnoi_column *column, const gnoi_row_list *list,
+                       double y, double xa, double xb)
+{
+    double low = y < column->at_y ? y : column->at_y, high = y < column->at_y ? column->at_y : y, x = column->at_x;
+    int row = gnoi_region_row(r, y), row_then = gnoi_region_row(r, column->at_y);
+    if (!column->known || !(x >= xa && x <= xb) || row - row_then > 1 || row_then - row > 1 || comes_near(columns, list, x, low, high))
+        return 0;
+    if (row != row_then) {
+        gnoi_row_list then = gnoi_row_list_of(columns, r, column->rim_rows, column->rim, column->rim_count, row_then);
+        return !comes_near(columns, &then, x, low, high);
+    }
+    return 1;
+}
+
+/* The number of far sides over the point of the receiver that is seen at (x,y); -1 when memory fails. */
+static int count_at(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                    const gnoi_receiver *r, double x, double y, gnoi_columns *columns)
+{
+    gnoi_pair p;
+    if (!gnoi_pair_make(&p, scene, view, lamp, r))
+        return 0;
+    return count_above(&p, casters, gnoi_view_point(view, x, y, gnoi_plane_at(&r->nearness, x, y)), 1 << 30, NULL, columns);
+}
+
+/* Carries what the column knows to the point (x,y), over the steps of line y; 0 when that cannot be. */
+static int carry(const gnoi_receiver *r, const gnoi_columns *columns, const gnoi_row_list *list, size_t steps, double x, double y,
+                 double xa, double xb, gnoi_column *column)
+{
+    if (!still_known(r, columns, column, list, y, xa, xb))
+        return 0;
+    for (size_t i = 0; i < steps; i++) {
+        const gnoi_step *s = &columns->steps[i];
+        column->count += s->x > column->at_x && s->x <= x ? s->step : 0;
+        column->count -= s->x > x && s->x <= column->at_x ? s->step : 0;
+    }
+    return column->count >= 0;
+}
+
+int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                         const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
+{
+    gnoi_row_list list = gnoi_row_list_of(columns, receiver, column->rim_rows, column->rim, column->rim_count, gnoi_region_row(receiver, y));
+    double begin = -HUGE_VAL, x;
     size_t n;
     int count;
     if (!gnoi_reserve(columns->context, (void **)&columns->steps, &columns->step_capacity, column->rim_count, sizeof *columns->steps))
         return 0;
-    n = cross_rims(columns, column, y);
+    n = cross_rims(columns, &list, y);
     x = widest_middle(columns->steps, n, xa, xb);
-    point = gnoi_view_point(view, x, y, gnoi_plane_at(&p->receiver->nearness, x, y));
-    count = count_above(p, casters, point, 1 << 30, NULL, columns);
-    if (count < 0)
+    if (!carry(receiver, columns, &list, n, x, y, xa, xb, column))
+        column->count = count_at(scene, view, lamp, casters, receiver, x, y, columns);
+    if (column->count < 0)
         return 0;
-    for (size_t i = 0; i < n && columns->steps[i].x <= x; i++)
+    column->known = 1;
+    column->at_x = x;
+    column->at_y = y;
+    count = column->count;
+    for (size_t i = 0; i < n && columns->steps[i].x <= column->at_x; i++)
         count -= columns->steps[i].step;
     for (size_t i = 0; i <= n; i++) {
         double end = i < n ? columns->steps[i].x : HUGE_VAL;

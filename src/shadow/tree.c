@@ -74,14 +74,16 @@ static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const un
                          const gnoi_frame *frame, gnoi_boxes *b)
 {
     const gnoi_prepared *prep = &scene->prepared;
-    for (size_t i = 0; i < prep->poly_count; i++) {
+    const size_t count = prep->poly_count + (halved ? prep->cap_count : 0);
+    for (size_t i = 0; i < count; i++) {
         const gnoi_poly *poly = &prep->polys[i];
         const double *t = scene->materials[poly->material].transmission;
         vec3 points[GNOI_FRAME_POINTS];
         gnoi_lbox box[6];
         int n;
         if ((!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1) ||
-            !is_part(part, gnoi_halved_side(scene, lamp, halved, poly)))
+            !is_part(part, gnoi_halved_side(scene, lamp, halved, poly)) ||
+            (i >= prep->poly_count && gnoi_halved_side(scene, lamp, halved, poly) == 0))
             continue;
         n = gnoi_frame_boxes(frame, points, gnoi_poly_hull(scene, poly, points), box);
         if (!gnoi_boxes_reserve(b, 6))

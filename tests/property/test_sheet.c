@@ -1,4 +1,4 @@
-/* test_sheet.c -- shadows of closed solids, found by the contours of their far sides, against the same solids of a
+/* test_sheet.c -- shadows of closed solids and of such as stand open on a plane, found by the contours of their far sides, against the same solids of a
  * material that lets a billionth of the light through: such solids are not halved, and every polygon casts for itself. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -49,8 +49,8 @@ static int add_vertex(solid *s, double x, double y, double z)
     return (int)s->vertices++;
 }
 
-/* A prism over a ring of n points, counter-clockwise, from z = 0 to 1; lids as n-gons. */
-static void make_prism(solid *s, int n, double (*ring)[2])
+/* A prism over a ring of n points, counter-clockwise, from z = 0 to 1; lids as n-gons; open: without the lower one. */
+static void make_prism(solid *s, int n, double (*ring)[2], int open)
 {
     int top[64], bottom[64];
     for (int i = 0; i < n; i++) {
@@ -58,14 +58,15 @@ static void make_prism(solid *s, int n, double (*ring)[2])
         top[i] = add_vertex(s, ring[i][0], ring[i][1], 1);
     }
     add_polygon(s, top, n);
-    add_polygon(s, bottom, n);
+    if (!open)
+        add_polygon(s, bottom, n);
     for (int i = 0; i < n; i++) {
         int j = (i + 1) % n, side[4] = {2 * i, 2 * j, 2 * j + 1, 2 * i + 1};
         add_polygon(s, side, 4);
     }
 }
 
-static void make_star(solid *s, int tips, double inner)
+static void make_star(solid *s, int tips, double inner, int open)
 {
     double ring[64][2];
     for (int i = 0; i < 2 * tips; i++) {
@@ -73,7 +74,7 @@ static void make_star(solid *s, int tips, double inner)
         ring[i][0] = r * cos(a);
         ring[i][1] = r * sin(a);
     }
-    make_prism(s, 2 * tips, ring);
+    make_prism(s, 2 * tips, ring, open);
 }
 
 /* A torus of triangles, standing on z = 0, bumpy so that its contour is ragged. */
@@ -98,10 +99,12 @@ static void make_solid(solid *s, uint32_t *seed)
     double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     memset(s, 0, offsetof(solid, p));
     s->ring[0] = 0;
-    switch (next_random(seed) % 4) {
-    case 0: make_prism(s, 4, square); break;
-    case 1: make_star(s, 3 + (int)(next_random(seed) % 4), uniform(seed, 0.3, 0.7)); break;
-    case 2: make_torus(s, 12, 8, 0.35, 0, seed); break;
+    switch (next_random(seed) % 6) {
+    case 0:
+    case 1: make_prism(s, 4, square, next_random(seed) & 1); break;
+    case 2:
+    case 3: make_star(s, 3 + (int)(next_random(seed) % 4), uniform(seed, 0.3, 0.7), next_random(seed) & 1); break;
+    case 4: make_torus(s, 12, 8, 0.35, 0, seed); break;
     default: make_torus(s, 30, 16, 0.3, 0.3, seed); break;
     }
 }

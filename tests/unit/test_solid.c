@@ -67,13 +67,13 @@ static void test_parts(void **state)
     add_box(scene, a0, a1, 6, 0);
     add_box(scene, b0, b1, 5, 0); /* one face is missing */
     add_box(scene, c0, c1, 6, 1);
-    assert_int_equal(count_closed(scene), 2);
+    assert_int_equal(count_closed(scene), 3); /* by a cap in its place */
     assert_int_equal(scene->prepared.solid_count, 3);
+    assert_int_equal(scene->prepared.cap_count, 1);
     for (size_t i = 0; i < 3; i++) {
         const gnoi_solid *s = &scene->prepared.solids[i];
-        assert_int_equal(s->closed, s->lower[0] != 3);
-        if (s->closed)
-            assert_int_equal(s->outwards, s->lower[0] == 0);
+        assert_int_equal(s->cap != GNOI_NONE, s->lower[0] == 3);
+        assert_int_equal(s->outwards, s->lower[0] != 7);
     }
     drop(scene);
 }

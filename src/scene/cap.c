@@ -1,0 +1,245 @@
+/* cap.c -- closes parts whose only opening is one loop in a plane that all of the part is on one side of: a house without a floor.
+ *
+ * Place in the data flow: solid.c -> here -> the shadow passes, which leave half the casters of a closed part away.
+ * A cap is an invisible polygon. It casts no false shadow and hides no true one as long as eye and lamp are on its inner side
+ * (gnoi_cap_inside): beyond the cap there is nothing of the part, so a path from either that leaves through the cap was inside,
+ * having come in through a real polygon, and no path comes in through the cap. So the eye sees nothing of the inside, and a
+ * path from the lamp that crosses the cap has met a real polygon before.
+ */
+#include "scene/boundary.h"
+#include "scene/prepare.h"
+
+#include <string.h>
+
+/* The opening's corners lie on one plane, and the part on one side of it, within the first share of the part's size; it rises above
+ * it by more than the second, or it is flat itself and not worth a cap. */
+#define CAP_FLAT 1e-9
+#define CAP_RISE 1e-3
+
+/* The boundary of one part, and the plane that may close it. */
+typedef struct opening {
+    uint32_t first, count; /* of work.sorted */
+    vec3 n;                /* away from the part */
+    double d, size, low;   /* low: the part's least height, negative */
+    int good;
+} opening;
+
+typedef struct work {
+    gno_scene *scene;
+    gnoi_boundary boundary;
+    gnoi_boundary_edge *sorted; /* the boundary by part */
+    opening *openings;          /* one for each part */
+    uint32_t *next;             /* for each prepared vertex: where the boundary goes from there, or GNOI_NONE */
+} work;
+
+static vec3 position(const work *w, uint32_t vertex) { return v3_from(w->scene->prepared.positions[vertex]); }
+
+static int find_boundary(work *w, const unsigned char *may_close)
+{
+    const gnoi_prepared *prep = &w->scene->prepared;
+    unsigned char *taken = gnoi_calloc(w->scene->context, prep->poly_count, 1);
+    int good;
+    for (size_t i = 0; taken && i < prep->poly_count; i++)
+        taken[i] = may_close[gnoi_solid_of(prep, &prep->polys[i])];
+    good = taken && gnoi_boundary_find(w->scene->context, prep, taken, prep->poly_count, &w->boundary);
+    gnoi_free(w->scene->context, taken, prep->poly_count, 1);
+    return good;
+}
+
+static opening *opening_of(const work *w, const gnoi_boundary_edge *e)
+{
+    return &w->openings[w->scene->prepared.vertex_solid[e->from]];
+}
+
+static void sort_by_part(work *w)
+{
+    uint32_t sum = 0;
+    for (size_t i = 0; i < w->boundary.count; i++)
+        opening_of(w, &w->boundary.edges[i])->count++;
+    for (size_t k = 0; k < w->scene->prepared.solid_count; k++) {
+        w->openings[k].first = sum;
+        sum += w->openings[k].count;
+        w->openings[k].count = 0;
+    }
+    for (size_t i = 0; i < w->boundary.count; i++) {
+        opening *o = opening_of(w, &w->boundary.edges[i]);
+        w->sorted[o->first + o->count++] = w->boundary.edges[i];
+    }
+}
+
+/* 1 when the part's boundary is one loop that passes each of its vertices once. */
+static int is_loop(work *w, const opening *o)
+{
+    const gnoi_boundary_edge *edges = w->sorted + o->first;
+    uint32_t v = edges[0].from, steps = 0;
+    for (uint32_t i = 0; i < o->count; i++) {
+        if (w->next[edges[i].from] != GNOI_NONE)
+            return 0;
+        w->next[edges[i].from] = edges[i].to;
+    }
+    do {
+        v = w->next[v];
+        steps++;
+    } while (v != GNOI_NONE && v != edges[0].from && steps < o->count);
+    return v == edges[0].from && steps == o->count && steps >= 3;
+}
+
+/* The plane of the loop. The cap runs against the part's edges; its normal is away from the part. */
+static void set_plane(const work *w, opening *o)
+{
+    const gnoi_boundary_edge *edges = w->sorted + o->first;
+    vec3 first = position(w, edges[0].from), sum = v3(0, 0, 0);
+    double length, flat;
+    for (uint32_t i = 0; i < o->count; i++)
+        sum = v3_sub(sum, v3_cross(v3_sub(position(w, edges[i].from), first), v3_sub(position(w, edges[i].to), first)));
+    length = v3_length(sum);
+    o->good = length > 0;
+    if (!o->good)
+        return;
+    o->n = v3_scale(sum, 1 / length);
+    o->d = -v3_dot(o->n, first);
+    flat = CAP_FLAT * o->size;
+    for (uint32_t i = 0; i < o->count; i++)
+        o->good &= fabs(v3_dot(o->n, position(w, edges[i].from)) + o->d) <= flat;
+}
+
+static void judge_openings(work *w)
+{
+    const gnoi_prepared *prep = &w->scene->prepared;
+    for (size_t k = 0; k < prep->solid_count; k++) {
+        opening *o = &w->openings[k];
+        const gnoi_solid *s = &prep->solids[k];
+        o->size = fabs(s->upper[0] - s->lower[0]) + fabs(s->upper[1] - s->lower[1]) + fabs(s->upper[2] - s->lower[2]);
+        o->good = o->count > 0 && is_loop(w, o);
+        if (o->good)
+            set_plane(w, o);
+    }
+    /* Inside out, the normal found is towards the part: then heights have the other sign, and the part is on no one side. */
+    for (uint32_t v = 0; v < prep->vertex_count; v++) {
+        opening *o = &w->openings[prep->vertex_solid[v]];
+        double h = o->good ? v3_dot(o->n, position(w, v)) + o->d : 0;
+        o->good &= h <= CAP_FLAT * o->size;
+        o->low = h < o->low ? h : o->low;
+    }
+    for (size_t k = 0; k < prep->solid_count; k++)
+        w->openings[k].good &= w->openings[k].low < -CAP_RISE * w->openings[k].size;
+}
+
+/* A larger copy of an array of `count` elements; *array is NULL before and after where there is none. */
+static void *larger(gno_context *context, const void *array, size_t count, size_t room, size_t size)
+{
+    void *copy = array ? gnoi_malloc(context, room, size) : NULL;
+    if (copy && count)
+        memcpy(copy, array, count * size);
+    return copy;
+}
+
+/* Room for caps; nothing is changed when memory fails. Corner arrays share one capacity, so all grow or none does. */
+static int make_room(gno_scene *scene, size_t caps, size_t corners)
+{
+    gno_context *context = scene->context;
+    gnoi_prepared *p = &scene->prepared;
+    size_t polys = p->poly_count + caps, rings = p->ring_count + caps + 1, all = p->corner_count + corners;
+    gnoi_poly *poly = larger(context, p->polys, p->poly_count, polys, sizeof *poly);
+    uint32_t *ring = larger(context, p->ring_corner, p->ring_count + 1, rings, sizeof *ring);
+    uint32_t *vertex = larger(context, p->corner_vertex, p->corner_count, all, sizeof *vertex);
+    uint32_t *normal = larger(context, p->corner_normal, p->corner_count, all, sizeof *normal);
+    uint32_t *texcoord = larger(context, p->corner_texcoord, p->corner_count, all, sizeof *texcoord);
+    int good = poly && ring && vertex && (normal || !p->corner_normal) && (texcoord || !p->corner_texcoord);
+    gnoi_free(context, good ? p->polys : poly, good ? p->poly_capacity : polys, sizeof *poly);
+    gnoi_free(context, good ? p->ring_corner : ring, good ? p->ring_capacity : rings, sizeof *ring);
+    gnoi_free(context, good ? p->corner_vertex : vertex, good ? p->corner_capacity : all, sizeof *vertex);
+    gnoi_free(context, good ? p->corner_normal : normal, good ? p->corner_capacity : all, sizeof *normal);
+    gnoi_free(context, good ? p->corner_texcoord : texcoord, good ? p->corner_capacity : all, sizeof *texcoord);
+    if (!good)
+        return 0;
+    p->polys = poly;
+    p->ring_corner = ring;
+    p->corner_vertex = vertex;
+    p->corner_normal = normal;
+    p->corner_texcoord = texcoord;
+    p->poly_capacity = polys;
+    p->ring_capacity = rings;
+    p->corner_capacity = all;
+    return 1;
+}
+
+/* Appends the cap of part k behind the polygons, rings and corners there are; their counts stay those of real polygons. */
+static void append_cap(work *w, uint32_t k, size_t *ring, size_t *corner)
+{
+    gnoi_prepared *p = &w->scene->prepared;
+    const opening *o = &w->openings[k];
+    const gnoi_boundary_edge *edges = w->sorted + o->first;
+    gnoi_poly *cap = &p->polys[p->poly_count + p->cap_count];
+    uint32_t v = edges[0].from;
+    *cap = p->polys[edges[0].poly];
+    cap->n[0] = o->n.x;
+    cap->n[1] = o->n.y;
+    cap->n[2] = o->n.z;
+    cap->d = o->d;
+    cap->ring = (uint32_t)*ring;
+    cap->corner = (uint32_t)*corner;
+    cap->ring_count = 1;
+    cap->corner_count = o->count;
+    cap->triangle = GNOI_NONE;
+    cap->shading = GNO_SHADING_FLAT;
+    for (uint32_t i = o->count; i-- > 0; v = w->next[v])
+        p->corner_vertex[*corner + i] = v;
+    *corner += o->count;
+    p->ring_corner[++*ring] = (uint32_t)*corner;
+    p->solids[k].closed = 1;
+    p->solids[k].outwards = 1;
+    p->solids[k].cap = (uint32_t)(p->poly_count + p->cap_count++);
+}
+
+static int append_caps(work *w)
+{
+    gnoi_prepared *p = &w->scene->prepared;
+    size_t caps = 0, corners = 0, ring = p->ring_count, corner = p->corner_count;
+    for (size_t k = 0; k < p->solid_count; k++)
+        if (w->openings[k].good) {
+            caps++;
+            corners += w->openings[k].count;
+        }
+    if (caps == 0 || p->corner_count + corners >= GNOI_NONE || p->poly_count + caps >= GNOI_NONE)
+        return 1;
+    if (!make_room(w->scene, caps, corners))
+        return 0;
+    for (uint32_t k = 0; k < p->solid_count; k++)
+        if (w->openings[k].good)
+            append_cap(w, k, &ring, &corner);
+    return 1;
+}
+
+gno_status gnoi_cap_solids(gno_scene *scene, const unsigned char *may_close)
+{
+    gno_context *context = scene->context;
+    const gnoi_prepared *prep = &scene->prepared;
+    const size_t vertices = prep->vertex_count, parts = prep->solid_count;
+    int good;
+    work w;
+    memset(&w, 0, sizeof w);
+    w.scene = scene;
+    good = find_boundary(&w, may_close);
+    w.sorted = gnoi_malloc(context, w.boundary.count, sizeof *w.sorted);
+    w.openings = gnoi_calloc(context, parts, sizeof *w.openings);
+    w.next = gnoi_malloc(context, vertices, sizeof *w.next);
+    good = good && w.sorted && w.openings && w.next;
+    if (good && w.boundary.count) {
+        memset(w.next, 0xff, vertices * sizeof *w.next);
+        sort_by_part(&w);
+        judge_openings(&w);
+        good = append_caps(&w);
+    }
+    gnoi_free(context, w.sorted, w.boundary.count, sizeof *w.sorted);
+    gnoi_free(context, w.openings, parts, sizeof *w.openings);
+    gnoi_free(context, w.next, vertices, sizeof *w.next);
+    gnoi_boundary_free(context, &w.boundary);
+    return good ? GNO_OK : GNO_ERROR_MEMORY;
+}
+
+int gnoi_cap_inside(const gno_scene *scene, size_t solid, vec3 point)
+{
+    const gnoi_poly *cap = &scene->prepared.polys[scene->prepared.solids[solid].cap];
+    return v3_dot(v3_from(cap->n), point) + cap->d < -CAP_FLAT * scene->prepared.scale;
+}
