@@ -7,11 +7,15 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 
 static const command *const commands[] = {&command_render, &command_vector, &command_lit, &command_info, &command_matrix};
 
@@ -81,9 +85,19 @@ static void keep_standard_streams(void)
     }
 }
 
+/* A freed block's pages serve the next one: given back to the system and asked for again, each would be cleared anew. */
+static void keep_freed_pages(void)
+{
+#ifdef __GLIBC__
+    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_TRIM_THRESHOLD, INT_MAX);
+#endif
+}
+
 int main(int argc, char **argv)
 {
     keep_standard_streams();
+    keep_freed_pages();
     /* A reader that went away shall be a failed write with a message and clean-up, not a sudden end. */
     signal(SIGPIPE, SIG_IGN);
     if (argc < 2) {

@@ -37,6 +37,7 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_free(context, tile->items, tile->item_capacity, sizeof *tile->items);
     gnoi_free(context, tile->slots, tile->slot_capacity, sizeof *tile->slots);
     gnoi_free(context, tile->edges, tile->edge_capacity, sizeof *tile->edges);
+    gnoi_free(context, tile->open, tile->open_capacity, sizeof *tile->open);
     gnoi_free(context, tile->crossings, tile->crossing_capacity, sizeof *tile->crossings);
     gnoi_free(context, tile->touched, tile->touched_capacity, sizeof *tile->touched);
     gnoi_free(context, tile->columns, tile->column_capacity, sizeof *tile->columns);

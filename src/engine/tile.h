@@ -110,12 +110,21 @@ typedef struct gnoi_veil {
     gnoi_tinted_lines by_line;
 } gnoi_veil;
 
+/* A line as polygons are judged by it before they are drawn: height and ends in pixels from the tile's corner; what is farther than
+ * `bar` is hidden on all of it (-infinity while it has gaps). */
+typedef struct gnoi_open {
+    float y, xa, xb, bar;
+} gnoi_open;
+
 typedef struct gnoi_tile {
     const gnoi_frame_job *job;
     int x0, y0, width, height; /* pixels */
     int failed;                /* sticky: memory ran out */
     gnoi_lines lines;
     uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
+    uint32_t row_mask[GNOI_TILE_ROWS];     /* bit x: some line of the row passes pixel x */
+    size_t open_capacity;
+    gnoi_open *open;                       /* beside the lines while polygons are drawn */
     gnoi_keyed *order, *order_scratch;     /* items nearest first */
     size_t order_capacity, order_scratch_capacity;
     gnoi_item *items;                      /* beside the tile's bin */

@@ -22,6 +22,10 @@ static uint32_t descending_key(float z)
 /* Added to the key of what is not opaque, so that it comes after all that is. */
 #define SEE_THROUGH (1u << 22)
 
+/* Items are in order but for the bits that their keys leave away; after so many it is looked whether the rest can be seen at all. */
+#define ORDER_SLACK 5e-4f
+#define COVER_STEP 16
+
 /* A polygon counts as thin from this width on, in pixels, and while it rises by less than this share of it. */
 #define THIN_WIDTH 6.0
 #define THIN_SLOPE 0.5
@@ -284,21 +288,72 @@ static inline void draw_line(gnoi_tile *tile, uint32_t line, uint32_t slot, int 
     }
 }
 
-/* 1 when a line may cross the item and show a surface no nearer than `nearest`. */
-static int is_open(const gnoi_tile *tile, const gnoi_line *line, const gnoi_item *item, float nearest)
+/* ---- which lines a polygon may show on ------------------------------------------------------------------------------ */
+
+static void set_bar(gnoi_tile *tile, uint32_t line)
 {
-    float y = (float)(line->y - tile->y0);
-    return y >= item->y0 && y < item->y1 && (float)line->xa < item->x1 * GNOI_X_ONE && (float)line->xb > item->x0 * GNOI_X_ONE &&
-           (line->uncovered > 0 || !(line->farthest > nearest));
+    const gnoi_line *l = &tile->lines.lines[line];
+    tile->open[line].bar = l->uncovered > 0 ? -HUGE_VALF : l->farthest;
 }
 
-/* Lines of the tile that the item may cross: [*first,*end). */
+static uint32_t pixel_mask(float x0, float x1)
+{
+    unsigned first = x0 > 0 ? (unsigned)x0 : 0, last = x1 < GNOI_TILE_W - 1 ? (unsigned)x1 : GNOI_TILE_W - 1;
+    return (0xffffffffu >> (31 - last)) & (0xffffffffu << first);
+}
+
+static int open_lines(gnoi_tile *tile)
+{
+    if (!gnoi_reserve(tile->lines.context, (void **)&tile->open, &tile->open_capacity, tile->lines.line_count, sizeof *tile->open))
+        return 0;
+    for (int row = 0; row < tile->height + 2; row++) {
+        tile->row_mask[row] = 0;
+        for (uint32_t i = tile->row_line[row]; i < tile->row_line[row + 1]; i++) {
+            const gnoi_line *l = &tile->lines.lines[i];
+            gnoi_open *o = &tile->open[i];
+            o->y = (float)(l->y - tile->y0);
+            o->xa = (float)l->xa / GNOI_X_ONE;
+            o->xb = (float)l->xb / GNOI_X_ONE;
+            tile->row_mask[row] |= pixel_mask(o->xa, o->xb - 1);
+            set_bar(tile, i);
+        }
+    }
+    return 1;
+}
+
+/* 1 when a line may cross the item and show a surface no nearer than `nearest`. */
+static inline int is_open(const gnoi_open *line, const gnoi_item *item, float nearest)
+{
+    return line->y >= item->y0 && line->xa < item->x1 && line->xb > item->x0 && !(line->bar > nearest) && line->y < item->y1;
+}
+
+/* Lines of the tile that the item may cross, in order of height: [*first,*end). */
 static void line_range(const gnoi_tile *tile, const gnoi_item *item, uint32_t *first, uint32_t *end)
 {
     int rows = tile->height + 2;
-    int r0 = (int)clamp((double)item->y0 + 1, 0, rows), r1 = (int)clamp((double)item->y1 + 1, 0, rows - 1);
+    float y0 = item->y0 + 1, y1 = item->y1 + 1;
+    int r0 = y0 > 0 ? y0 < (float)rows ? (int)y0 : rows : 0, r1 = y1 > 0 ? y1 < (float)(rows - 1) ? (int)y1 : rows - 1 : 0;
+    uint32_t mask = item->x1 > 0 && item->x0 < GNOI_TILE_W ? pixel_mask(item->x0, item->x1) : 0, seen = 0;
+    *first = *end = 0;
+    if (y1 < 0 || r1 < r0)
+        return;
+    for (int row = r0; row <= r1; row++)
+        seen |= tile->row_mask[row];
+    if (!(seen & mask))
+        return;
     *first = tile->row_line[r0];
-    *end = item->y1 + 1 < 0 || r1 < r0 ? *first : tile->row_line[r1 + 1];
+    *end = tile->row_line[r1 + 1];
+    while (*end > *first && !(tile->open[*end - 1].y < item->y1))
+        --*end;
+}
+
+/* Whether nothing at nearness z or farther can be seen in the tile any more. */
+static int is_covered(const gnoi_tile *tile, float z)
+{
+    for (size_t i = 0; i < tile->lines.line_count; i++)
+        if (!(tile->open[i].bar > z))
+            return 0;
+    return 1;
 }
 
 static void set_outline(gnoi_tile *tile, const gnoi_item *item, const gnoi_poly *poly)
@@ -318,7 +373,7 @@ static void judge_thin(gnoi_tile *tile, const gnoi_item *item, const gnoi_poly *
     around.y0 -= 1;
     around.y1 += 1;
     for (line_range(tile, &around, &line, &end); line < end; line++)
-        if (is_open(tile, &tile->lines.lines[line], &around, item->z1)) {
+        if (is_open(&tile->open[line], &around, item->z1)) {
             set_outline(tile, item, poly);
             gnoi_tile_mark_thin(tile, tile->edges, tile->edge_count);
             gnoi_tile_mark_level(tile, tile->outline.x0, tile->outline.y0, tile->outline.x1, tile->outline.y1);
@@ -335,7 +390,7 @@ static void draw_item(gnoi_tile *tile, gnoi_item *item, uint32_t index)
         return;
     if (item->thin && tile->judging)
         judge_thin(tile, item, poly);
-    for (line_range(tile, item, &line, &end); line < end && !is_open(tile, &tile->lines.lines[line], item, bound); line++)
+    for (line_range(tile, item, &line, &end); line < end && !is_open(&tile->open[line], item, bound); line++)
         ;
     if (line == end)
         return;
@@ -348,10 +403,12 @@ static void draw_item(gnoi_tile *tile, gnoi_item *item, uint32_t index)
         return;
     bound = tile->lines.depths[item->slot].surely_before;
     for (; line < end && !item->see_through; line++)
-        if (is_open(tile, &tile->lines.lines[line], item, bound))
+        if (is_open(&tile->open[line], item, bound)) {
             draw_line(tile, line, item->slot, 0);
+            set_bar(tile, line);
+        }
     for (; line < end; line++)
-        if (is_open(tile, &tile->lines.lines[line], item, bound))
+        if (is_open(&tile->open[line], item, bound))
             draw_line(tile, line, item->slot, 1);
 }
 
@@ -369,11 +426,16 @@ void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count)
 {
     size_t i = 0, end = tile->opaque_count;
     tile->veiled = 0;
+    tile->failed |= !open_lines(tile);
     for (;;) {
         for (; i < end && !tile->failed; i++) {
             uint32_t item = tile->order[i].value;
+            float z = tile->items[item].z1;
+            if (i % COVER_STEP == 0 && is_covered(tile, z + ORDER_SLACK * fabsf(z)))
+                break;
             draw_item(tile, &tile->items[item], items[item]);
         }
+        i = end;
         tile->failed |= tile->lines.failed;
         if (end == count)
             break;
