@@ -30,7 +30,9 @@ void gno_clipper_destroy(gno_clipper *c)
     FREE(points, point_capacity);
     FREE(segments, segment_capacity);
     FREE(polygons, polygon_capacity);
+    FREE(ordered, ordered_capacity);
     FREE(cell_list, cell_capacity);
+    FREE(boxes, box_capacity);
     FREE(splits, split_capacity);
     FREE(keys, key_capacity);
     FREE(key_scratch, key_scratch_capacity);
@@ -41,7 +43,9 @@ void gno_clipper_destroy(gno_clipper *c)
     FREE(pieces, piece_capacity);
     FREE(sorted, sorted_capacity);
     FREE(edges, edge_capacity);
-    FREE(status, status_capacity);
+    FREE(blocks, block_capacity);
+    FREE(row, row_capacity);
+    FREE(ending, ending_capacity);
     FREE(around, around_capacity);
     FREE(on_path, on_path_capacity);
     FREE(ring_vertex, ring_vertex_capacity);

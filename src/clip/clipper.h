@@ -2,7 +2,7 @@
  *
  * Data flow of one call, each arrow one file of this folder:
  *
- *   shapes --grid--> points, segments --meet--> splits --pieces--> edges --sweep--> linked half-edges --rings--> result
+ *   shapes --grid--> points, segments --cells, meet--> splits --pieces--> edges --sweep--> linked half-edges --rings--> result
  *                                                   \--winding--/
  *
  * A *segment* is an edge of an input ring on the integer grid. A *split* says that a segment bends at a point: a hot pixel of snap
@@ -38,6 +38,17 @@ typedef struct gnoi_split {
     uint32_t segment, point;
 } gnoi_split;
 
+/* A rectangle of pixels, low <= x < high. */
+typedef struct gnoi_cell {
+    int64_t low[2], high[2];
+    int depth; /* lattices it lies in */
+} gnoi_cell;
+
+typedef struct gnoi_box {
+    int64_t x0, x1, y0, y1; /* ends included */
+    uint32_t segment;
+} gnoi_box;
+
 /* Windings of the two operands gained when an edge is crossed upwards; where an operand is a single polygon the count of its
  * pieces, of which only the last bit matters. */
 typedef struct gnoi_depth {
@@ -58,6 +69,7 @@ typedef struct gnoi_edge {
     gnoi_depth above;
     uint32_t under;    /* kept edge that the part of the plane just below lies on, or NONE */
     uint32_t next;     /* half-edge after this one's */
+    uint32_t block;    /* of the status, while the edge is in it */
     uint32_t polygon;  /* of the result */
     uint32_t flags;
 } gnoi_edge;
@@ -76,6 +88,25 @@ typedef struct gnoi_ring {
     int outer;
 } gnoi_ring;
 
+/* A few edges of the status, from below. */
+#define GNOI_CLIP_BLOCK 30
+typedef struct gnoi_block {
+    uint32_t place; /* in the row of blocks */
+    uint32_t count;
+    uint32_t edge[GNOI_CLIP_BLOCK];
+} gnoi_block;
+
+typedef struct gnoi_place {
+    uint32_t block, index;
+} gnoi_place;
+
+/* What the sweep meets at a vertex. */
+typedef struct gnoi_status {
+    gnoi_place at;  /* of the first edge that ends there, or of what starts there */
+    uint32_t below; /* edge just below, or NONE */
+    size_t count;   /* edges that end there: ending[0..count) */
+} gnoi_status;
+
 struct gno_clipper {
     gno_context *context;
     int bits; /* GNOI_CLIP_BITS; tests take fewer, so that pixels are large */
@@ -92,8 +123,13 @@ struct gno_clipper {
     gnoi_polygon *polygons;
     size_t polygon_count, polygon_capacity;
 
-    uint32_t *cell_list; /* meet: stack of lists of segments */
+    gnoi_segment *ordered; /* cells: the other array while segments are put in order */
+    size_t ordered_capacity;
+    uint32_t *cell_list; /* stack of lists of segments */
     size_t cell_capacity;
+    gnoi_box *boxes; /* of the present cell's segments, x0 rising but for `slack` */
+    size_t box_count, box_capacity;
+    int64_t slack;
     gnoi_split *splits;
     size_t split_count, split_capacity;
 
@@ -116,8 +152,13 @@ struct gno_clipper {
     gnoi_edge *edges;
     size_t edge_count, edge_capacity;
 
-    uint32_t *status; /* sweep: edges over the sweep line, from below */
-    size_t status_count, status_capacity;
+    gnoi_block *blocks; /* status: edges over the sweep line */
+    size_t block_count, block_capacity;
+    uint32_t free_block; /* first of those not in use, linked by `place` */
+    uint32_t *row;       /* blocks from below */
+    size_t row_count, row_capacity;
+    uint32_t *ending; /* edges that end in the present vertex, from below */
+    size_t ending_capacity;
     uint32_t *around; /* kept edges around a vertex; the path of a walk */
     size_t around_capacity;
 
@@ -145,8 +186,11 @@ struct gno_clipper {
 /* grid.c: checks both shapes, chooses the grid, rounds. clip may be NULL. Also ARGUMENT. */
 gno_status gnoi_clip_import(gno_clipper *c, const gno_shape *subject, const gno_shape *clip);
 
-/* meet.c: finds all hot pixels and the segments that pass through each. */
+/* cells.c: finds all hot pixels and the segments that pass through each. Puts the segments in another order. */
 gno_status gnoi_clip_meet(gno_clipper *c);
+
+/* meet.c: the same for the pixels of one cell; `list` are all segments that pass one of them, in order. 0: out of memory or LIMIT. */
+int gnoi_clip_meet_in_cell(gno_clipper *c, const gnoi_cell *cell, const uint32_t *list, size_t count);
 
 /* vertices.c: tells the points apart and numbers them in sweep order. */
 gno_status gnoi_clip_vertices(gno_clipper *c);
@@ -172,14 +216,14 @@ gno_status gnoi_clip_result(gno_clipper *c, gno_shape *result);
 
 /* ---- shared by the sweeps (status.c) ------------------------------------------------------------------------------ */
 
-/* Number of status edges that vertex v lies strictly above; the edges that end in v follow there. */
-size_t gnoi_status_find(const gno_clipper *c, uint32_t v);
+/* Empties the status; 0: out of memory, as below. */
+int gnoi_status_clear(gno_clipper *c);
 
-/* How many status edges from `at` on end in v. */
-size_t gnoi_status_ending(const gno_clipper *c, size_t at, uint32_t v);
+/* Looks around vertex v: `ending` is an edge that ends there, NONE if none does. Fills *met and c->ending. */
+int gnoi_status_meet(gno_clipper *c, uint32_t v, uint32_t ending, gnoi_status *met);
 
-/* Puts the edges first .. first+add-1 in the place of `drop` ones. 0: out of memory. */
-int gnoi_status_replace(gno_clipper *c, size_t at, size_t drop, uint32_t first, size_t add);
+/* Puts the edges first .. first+add-1 in the place of those that ended. */
+int gnoi_status_replace(gno_clipper *c, const gnoi_status *met, uint32_t first, size_t add);
 
 static inline gno_status gnoi_clip_no_memory(gno_clipper *c)
 {

@@ -59,42 +59,45 @@ static void link_around(gno_clipper *c, uint32_t v, size_t count)
     }
 }
 
-static int link_vertex(gno_clipper *c, uint32_t v, size_t first, size_t end, size_t at, size_t drop)
+static int link_vertex(gno_clipper *c, uint32_t v, size_t first, size_t end, size_t ending)
 {
     size_t count = 0;
-    if (!GNOI_CLIP_RESERVE(c, around, around_capacity, end - first + drop))
+    if (!GNOI_CLIP_RESERVE(c, around, around_capacity, end - first + ending))
         return 0;
     for (size_t i = first; i < end; i++)
         if (c->edges[i].flags & GNOI_EDGE_KEPT)
             c->around[count++] = (uint32_t)i;
-    for (size_t i = at + drop; i-- > at;)
-        if (c->edges[c->status[i]].flags & GNOI_EDGE_KEPT)
-            c->around[count++] = c->status[i];
+    for (size_t i = ending; i-- > 0;)
+        if (c->edges[c->ending[i]].flags & GNOI_EDGE_KEPT)
+            c->around[count++] = c->ending[i];
     link_around(c, v, count);
     return 1;
 }
 
-static int pass_vertex(gno_clipper *c, gno_clip_op op, uint32_t v, size_t first, size_t end)
+static int pass_vertex(gno_clipper *c, gno_clip_op op, uint32_t v, uint32_t ending, size_t first, size_t end)
 {
-    size_t at = gnoi_status_find(c, v), drop = gnoi_status_ending(c, at, v);
-    classify(c, op, first, end, at > 0 ? c->status[at - 1] : GNOI_CLIP_NONE);
-    return link_vertex(c, v, first, end, at, drop) && gnoi_status_replace(c, at, drop, (uint32_t)first, end - first);
+    gnoi_status met;
+    if (!gnoi_status_meet(c, v, ending, &met))
+        return 0;
+    classify(c, op, first, end, met.below);
+    return link_vertex(c, v, first, end, met.count) && gnoi_status_replace(c, &met, (uint32_t)first, end - first);
 }
 
 gno_status gnoi_clip_sweep(gno_clipper *c, gno_clip_op op)
 {
     size_t first = 0;
-    uint32_t *ends = c->bucket; /* as many as vertices: pieces.c counted by them */
+    uint32_t *ending = c->bucket; /* one edge that ends in each vertex; room for as many: pieces.c counted by vertices */
     for (size_t v = 0; v < c->vertex_count; v++)
-        ends[v] = 0;
+        ending[v] = GNOI_CLIP_NONE;
     for (size_t i = 0; i < c->edge_count; i++)
-        ends[c->edges[i].b] = 1;
-    c->status_count = 0;
+        ending[c->edges[i].b] = (uint32_t)i;
+    if (!gnoi_status_clear(c))
+        return gnoi_clip_no_memory(c);
     for (size_t v = 0; v < c->vertex_count; v++) {
         size_t end = first;
         while (end < c->edge_count && c->edges[end].a == v)
             end++;
-        if ((end > first || ends[v]) && !pass_vertex(c, op, (uint32_t)v, first, end))
+        if ((end > first || ending[v] != GNOI_CLIP_NONE) && !pass_vertex(c, op, (uint32_t)v, ending[v], first, end))
             return gnoi_clip_no_memory(c);
         first = end;
     }

@@ -129,12 +129,11 @@ static inline int gnoi_wide_turn(int64_t ax, int64_t ay, int64_t bx, int64_t by)
     return gnoi_wide_sign(gnoi_wide_cross(ax, ay, bx, by));
 }
 
-/* The integer nearest to length * num / den, halves upwards (towards +infinity), exactly. 0 < num < den, both below 2^107;
- * |length| < 2^53. A quotient in doubles is a few units off at most; the remainder, taken modulo 2^128, puts it right. */
-static inline int64_t gnoi_wide_share(int64_t length, gnoi_wide num, gnoi_wide den)
+/* gnoi_wide_share where doubles do not decide: a quotient in doubles is a few units off at most, and the remainder, taken modulo
+ * 2^128, puts it right. */
+static inline int64_t gnoi_wide_share_exact(int64_t length, gnoi_wide num, gnoi_wide den, double ratio)
 {
-    int64_t size = length < 0 ? -length : length;
-    int64_t q = (int64_t)((double)size * (gnoi_wide_double(num) / gnoi_wide_double(den)));
+    int64_t size = length < 0 ? -length : length, q = (int64_t)((double)size * ratio);
     gnoi_wide rest = gnoi_wide_combine(num, size, den, q);
     int half;
     while (gnoi_wide_sign(rest) < 0) {
@@ -147,6 +146,21 @@ static inline int64_t gnoi_wide_share(int64_t length, gnoi_wide num, gnoi_wide d
     }
     half = gnoi_wide_sign(gnoi_wide_combine(rest, 2, den, 1));
     return length < 0 ? -(q + (half > 0)) : q + (half >= 0);
+}
+
+/* The integer nearest to length * num / den, halves upwards (towards +infinity), exactly. 0 < num < den, both below 2^107;
+ * |length| < 2^53; ratio is the quotient of num and den as doubles: with the roundings of both, of the division and of the product here it
+ * is off by less than five units of 2^-53, so that most products lie safely on one side of a half. */
+static inline int64_t gnoi_wide_share(int64_t length, gnoi_wide num, gnoi_wide den, double ratio)
+{
+    double size = (double)(length < 0 ? -length : length) * ratio, error = size * (8.0 / 9007199254740992.0);
+    int64_t q = (int64_t)size;
+    double past = size - (double)q; /* exact */
+    if (past + error < 0.5)
+        return length < 0 ? -q : q;
+    if (past - error > 0.5)
+        return length < 0 ? -q - 1 : q + 1;
+    return gnoi_wide_share_exact(length, num, den, ratio);
 }
 
 #endif

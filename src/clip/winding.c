@@ -50,37 +50,51 @@ static void make_edges(gno_clipper *c, const uint32_t *list, size_t count)
     }
 }
 
-/* The vertices of the edges in order, each once, as values of `keys`. */
+/* The vertices of the edges in order, each once, as keys; values are an edge that ends there, or NONE. */
 static size_t list_vertices(gno_clipper *c)
 {
     size_t n = 0, unique = 0;
     for (size_t i = 0; i < c->edge_count; i++) {
-        c->keys[n].key = c->keys[n].value = c->edges[i].a;
-        n++;
-        c->keys[n].key = c->keys[n].value = c->edges[i].b;
-        n++;
+        c->keys[n].key = c->edges[i].a;
+        c->keys[n++].value = GNOI_CLIP_NONE;
+        c->keys[n].key = c->edges[i].b;
+        c->keys[n++].value = (uint32_t)i;
     }
     gnoi_sort(c->keys, c->key_scratch, n);
-    for (size_t i = 0; i < n; i++)
-        if (unique == 0 || c->keys[unique - 1].value != c->keys[i].value)
+    for (size_t i = 0; i < n; i++) {
+        if (unique == 0 || c->keys[unique - 1].key != c->keys[i].key)
             c->keys[unique++] = c->keys[i];
+        else if (c->keys[i].value != GNOI_CLIP_NONE)
+            c->keys[unique - 1].value = c->keys[i].value;
+    }
     return unique;
+}
+
+/* Signs of the edges that start in one vertex, by turns from what lies below them. */
+static void give_signs(gno_clipper *c, size_t first, size_t end, uint32_t below)
+{
+    int32_t inside = below != GNOI_CLIP_NONE ? c->edges[below].above.of[0] : 0;
+    for (size_t i = first; i < end; i++) {
+        gnoi_edge *e = &c->edges[i];
+        c->sorted[e->next].sign = inside ? -1 : 1;
+        inside = e->above.of[0] = !inside;
+    }
 }
 
 static int sweep_polygon(gno_clipper *c)
 {
     size_t vertices = list_vertices(c), first = 0;
-    c->status_count = 0;
+    if (!gnoi_status_clear(c))
+        return 0;
     for (size_t i = 0; i < vertices; i++) {
-        uint32_t v = c->keys[i].value;
-        size_t at = gnoi_status_find(c, v), drop = gnoi_status_ending(c, at, v), end = first;
-        int32_t inside = at > 0 ? c->edges[c->status[at - 1]].above.of[0] : 0;
-        for (; end < c->edge_count && c->edges[end].a == v; end++) {
-            gnoi_edge *e = &c->edges[end];
-            c->sorted[e->next].sign = inside ? -1 : 1;
-            inside = e->above.of[0] = !inside;
-        }
-        if (!gnoi_status_replace(c, at, drop, (uint32_t)first, end - first))
+        gnoi_status met;
+        size_t end = first;
+        while (end < c->edge_count && c->edges[end].a == c->keys[i].key)
+            end++;
+        if (!gnoi_status_meet(c, c->keys[i].key, c->keys[i].value, &met))
+            return 0;
+        give_signs(c, first, end, met.below);
+        if (!gnoi_status_replace(c, &met, (uint32_t)first, end - first))
             return 0;
         first = end;
     }

@@ -117,16 +117,17 @@ static void star(shape_random *r, shape_buffer *b, double cx, double cy, double 
 
 static void make_stars(shape_random *r, int size, shape_buffer *b)
 {
+    double cx = shape_uniform(r, -2, 2), cy = shape_uniform(r, -2, 2);
     begin(b);
-    star(r, b, shape_uniform(r, -2, 2), shape_uniform(r, -2, 2), 0.3, 10, shape_integer(r, 3, 40 * size));
+    star(r, b, cx, cy, 0.3, 10, shape_integer(r, 3, 40 * size));
 }
 
 static void make_convex(shape_random *r, int size, shape_buffer *b)
 {
     for (int k = shape_integer(r, 1, 6 * size); k > 0; k--) {
-        double radius = shape_uniform(r, 0.1, 4);
+        double radius = shape_uniform(r, 0.1, 4), cx = shape_uniform(r, -5, 5), cy = shape_uniform(r, -5, 5);
         begin(b);
-        star(r, b, shape_uniform(r, -5, 5), shape_uniform(r, -5, 5), radius, radius, shape_integer(r, 3, 8));
+        star(r, b, cx, cy, radius, radius, shape_integer(r, 3, 8));
     }
 }
 
@@ -137,16 +138,9 @@ static void make_comb(shape_random *r, int size, shape_buffer *b)
     double slant = shape_integer(r, 0, 2) == 0 ? shape_uniform(r, -0.3, 0.3) : 0;
     begin(b);
     for (int i = 0; i < 2 * teeth; i++) {
-        double x = i * 0.5, low = i % 2 ? 0 : 10, x2 = x, low2 = i % 2 ? 10 : 1;
-        low = i % 2 ? 10 : 1;
-        low2 = i % 2 ? 1 : 10;
-        if (upright) {
-            shape_point(b, x, low + slant * x);
-            shape_point(b, x2, low2 + slant * x2);
-        } else {
-            shape_point(b, low + slant * x, x);
-            shape_point(b, low2 + slant * x2, x2);
-        }
+        double along = i * 0.5, across = i % 2 ? 10 : 1;
+        for (int k = 0; k < 2; k++, across = 11 - across)
+            shape_point(b, upright ? along : across + slant * along, upright ? across + slant * along : along);
     }
     shape_point(b, upright ? teeth : 0, upright ? 0 : teeth);
     shape_point(b, 0, 0);
@@ -251,7 +245,7 @@ static void copy_moved(const shape_buffer *from, shape_buffer *to, double dx, do
 /* A shape and itself: the same, moved by less than a rounding error, by a step of its lattice, or scaled about a corner. */
 static void make_self(shape_random *r, int size, shape_buffer *a, shape_buffer *b)
 {
-    double tiny = shape_uniform(r, -1e-13, 1e-13);
+    double tiny = shape_uniform(r, -1e-13, 1e-13), dx = shape_integer(r, -1, 1), dy = shape_integer(r, -1, 1);
     switch (shape_integer(r, 0, 4)) {
     case 0: make_stars(r, size, a); break;
     case 1: make_comb(r, size, a); break;
@@ -262,7 +256,7 @@ static void make_self(shape_random *r, int size, shape_buffer *a, shape_buffer *
     switch (shape_integer(r, 0, 3)) {
     case 0: copy_moved(a, b, 0, 0, 1); break;
     case 1: copy_moved(a, b, tiny, tiny / 3, 1); break;
-    case 2: copy_moved(a, b, shape_integer(r, -1, 1), shape_integer(r, -1, 1), 1); break;
+    case 2: copy_moved(a, b, dx, dy, 1); break;
     default: copy_moved(a, b, 0, 0, 0.5);
     }
 }
@@ -293,11 +287,12 @@ static void make_slivers(shape_random *r, int size, shape_buffer *b)
     double slope = shape_uniform(r, -1, 1);
     for (int k = shape_integer(r, 1, 5 * size); k > 0; k--) {
         double thin = pow(10, shape_uniform(r, -15, -1)), x0 = shape_uniform(r, 0, 2), x1 = shape_uniform(r, 8, 10);
-        double h = shape_uniform(r, -1, 1) * pow(10, shape_uniform(r, -14, 0));
+        double size_h = pow(10, shape_uniform(r, -14, 0)), h = size_h * shape_uniform(r, -1, 1);
+        double middle = shape_uniform(r, x0, x1), off = thin * shape_uniform(r, -1, 1);
         begin(b);
         shape_point(b, x0, slope * x0 + h);
         shape_point(b, x1, slope * x1 + h);
-        shape_point(b, shape_uniform(r, x0, x1), slope * 5 + h + thin * shape_uniform(r, -1, 1));
+        shape_point(b, middle, slope * 5 + h + off);
         if (shape_integer(r, 0, 1))
             shape_point(b, x0, slope * x0 + h + thin);
     }
@@ -311,8 +306,10 @@ static void make_lattice(shape_random *r, int size, shape_buffer *b)
         shape_begin_polygon(b);
         for (int ring = shape_integer(r, 1, 2); ring > 0; ring--) {
             shape_begin_ring(b);
-            for (int i = shape_integer(r, 1, 7); i > 0; i--)
-                shape_point(b, shape_integer(r, 0, side), shape_integer(r, 0, side));
+            for (int i = shape_integer(r, 1, 7); i > 0; i--) {
+                int x = shape_integer(r, 0, side);
+                shape_point(b, x, shape_integer(r, 0, side));
+            }
         }
     }
 }
@@ -321,8 +318,10 @@ static void make_tangle(shape_random *r, int size, shape_buffer *b)
 {
     for (int k = shape_integer(r, 1, 2 * size); k > 0; k--) {
         begin(b);
-        for (int i = shape_integer(r, 4, 16); i > 0; i--)
-            shape_point(b, shape_uniform(r, -5, 5), shape_uniform(r, -5, 5));
+        for (int i = shape_integer(r, 4, 16); i > 0; i--) {
+            double x = shape_uniform(r, -5, 5);
+            shape_point(b, x, shape_uniform(r, -5, 5));
+        }
     }
 }
 
@@ -360,16 +359,18 @@ static void make_zigzag(shape_random *r, int size, shape_buffer *b)
     int n = shape_integer(r, 3, 30 * size);
     double width = pow(10, shape_uniform(r, -12, 1));
     begin(b);
-    for (int i = 0; i < n; i++)
-        shape_point(b, (i % 2 ? 10 : 0) + shape_uniform(r, 0, 1), width * shape_uniform(r, -1, 1));
+    for (int i = 0; i < n; i++) {
+        double x = (i % 2 ? 10 : 0) + shape_uniform(r, 0, 1);
+        shape_point(b, x, width * shape_uniform(r, -1, 1));
+    }
 }
 
 static void make_boxes(shape_random *r, int size, shape_buffer *b)
 {
     for (int k = shape_integer(r, 1, 10 * size); k > 0; k--) {
-        int x = shape_integer(r, 0, 12), y = shape_integer(r, 0, 12);
+        int x = shape_integer(r, 0, 12), y = shape_integer(r, 0, 12), width = shape_integer(r, 1, 6), height = shape_integer(r, 1, 6);
         shape_begin_polygon(b);
-        box(b, x, y, x + shape_integer(r, 1, 6), y + shape_integer(r, 1, 6));
+        box(b, x, y, x + width, y + height);
     }
 }
 
