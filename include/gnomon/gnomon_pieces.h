@@ -104,7 +104,9 @@ GNO_API gno_status gno_lit_pieces(gno_scene *scene, size_t light, const gno_lit_
 
 typedef struct gno_visible_def {
     int threads;      /* 0 (default): one per processor; results do not depend on it */
-    int split;        /* 1 (default): split by the lights that reach; 0: not split, light_count is 0 */
+    int split;        /* 1 (default): split by the lights that reach, area lights point by point; 0: not split, light_count is 0;
+                         2: split by all but the points of area lights, of which a piece names those that reach all of it (what the
+                         others reach is kept for gno_pieces_colours): the number of pieces stays small */
     int see_through;  /* 1 (default): transparent polygons hide nothing, their pieces lie over others; 0: every polygon hides */
     const gno_pieces *const *lit; /* lit pieces of this scene kept from gno_lit_pieces, one set for each expanded light, NULL where
                                      there is none; NULL (default): none at all. Saves time on every view but the first */

@@ -1,6 +1,6 @@
 /* weiler_atherton.c -- the object-space engine: visible pieces painted with exact area coverage.
  *
- * Place in the data flow: visible pieces, split by the lights that reach them -> picture edges by tile (scan/piece_bins.h) -> area
+ * Place in the data flow: visible pieces, and beside them what single lights reach of each -> picture edges by tile (scan/piece_bins.h) -> area
  * and centre in every pixel (scan/coverage.h) -> samples as the scan-line engine takes them (tile_rows.c, tile_shade.c) -> picture.
  * A pixel gives one sample for each polygon seen in it, at the middle of what is seen, and one more for each lamp that reaches only a
  * part of that, in the middle of the part.
@@ -12,6 +12,7 @@
 #include "engine/piece_veil.h"
 #include "scan/coverage.h"
 #include "scan/piece_bins.h"
+#include "shadow/lamp.h"
 #include <string.h>
 
 /* Parts of a pixel smaller than this add less than any picture format can hold. */
@@ -32,13 +33,28 @@ typedef struct share {
     double rgb[3], area;
 } share;
 
+/* A set of pieces and where its pieces are. */
+typedef struct layer {
+    const gno_pieces *pieces; /* NULL: none */
+    gnoi_piece_bins bins;
+} layer;
+
 typedef struct paint_job {
     const gnoi_frame_job *frame;
-    const gno_pieces *pieces;
-    gnoi_piece_bins bins;
-    share *shares; /* one for each of bins.items, when means are wanted */
+    layer seen;   /* what the eye sees */
+    layer beside; /* what single lights reach of it where that is neither all nor nothing */
+    share *shares; /* one for each of seen.bins.items, when means are wanted */
     struct painter **workers;
 } paint_job;
+
+/* Pieces of one polygon and sheet in a tile; and, among others of the same scene polygon, what single lights reach of them. */
+typedef struct run {
+    const uint32_t *items;
+    size_t count;
+    const uint32_t *beside;
+    size_t beside_count;
+    uint32_t poly, sheet;
+} run;
 
 typedef struct painter {
     gnoi_tile tile;
@@ -83,24 +99,40 @@ static void painter_free(gno_context *context, painter *p)
 
 /* ---- coverage of one polygon ------------------------------------------------------------------------------------------ */
 
-/* Sets the lamps' columns for a polygon from the pieces of it that the tile holds. */
-static int sort_lamps(painter *p, const uint32_t *items, size_t count)
+static void count_lights(painter *p, const gno_pieces *pieces, uint32_t index)
+{
+    gno_piece piece;
+    gno_pieces_get(pieces, index, &piece);
+    for (size_t k = 0; k < piece.light_count; k++) {
+        const double *passed = piece.passed + 3 * k;
+        p->any[piece.lights[k]]++;
+        p->whole[piece.lights[k]] += passed[0] >= 1 && passed[1] >= 1 && passed[2] >= 1;
+    }
+}
+
+static int is_beside(const painter *p, const run *r, size_t i)
+{
+    const gnoi_picture_piece *shape = &p->job->beside.bins.pieces[r->beside[i]];
+    return shape->poly == r->poly && shape->sheet == r->sheet;
+}
+
+/* Sets the lamps' columns for a run. */
+static int sort_lamps(painter *p, const run *r)
 {
     size_t lamps = (size_t)p->job->frame->lamp_count;
     p->split_count = 0;
     memset(p->whole, 0, lamps * sizeof *p->whole);
     memset(p->any, 0, lamps * sizeof *p->any);
-    for (size_t i = 0; i < count; i++) {
-        gno_piece piece;
-        gno_pieces_get(p->job->pieces, items[i], &piece);
-        for (size_t k = 0; k < piece.light_count; k++) {
-            const double *passed = piece.passed + 3 * k;
-            p->any[piece.lights[k]]++;
-            p->whole[piece.lights[k]] += passed[0] >= 1 && passed[1] >= 1 && passed[2] >= 1;
-        }
-    }
+    for (size_t i = 0; i < r->count; i++)
+        count_lights(p, p->job->seen.pieces, r->items[i]);
+    for (size_t j = 0; j < lamps; j++)
+        p->columns[j].state = p->whole[j] == r->count ? GNOI_COLUMN_LIT : GNOI_COLUMN_UNKNOWN;
+    for (size_t i = 0; i < r->beside_count; i++)
+        if (is_beside(p, r, i))
+            count_lights(p, p->job->beside.pieces, r->beside[i]);
     for (size_t j = 0; j < lamps; j++) {
-        p->columns[j].state = p->whole[j] == count ? GNOI_COLUMN_LIT : p->any[j] == 0 ? GNOI_COLUMN_DARK : GNOI_COLUMN_SPLIT;
+        if (p->columns[j].state != GNOI_COLUMN_LIT)
+            p->columns[j].state = p->any[j] == 0 ? GNOI_COLUMN_DARK : GNOI_COLUMN_SPLIT;
         p->split[j] = (uint32_t)p->split_count;
         p->split_count += p->columns[j].state == GNOI_COLUMN_SPLIT;
     }
@@ -133,36 +165,39 @@ static int clamp_pixel(double x, int width)
     return x < 0 ? 0 : x > width - 1 ? width - 1 : (int)x;
 }
 
-/* Adds one piece to the sums of its polygon and of the lamps that reach it. */
-static void add_piece(painter *p, uint32_t index)
+/* Adds one piece to the sums of its polygon, where it is seen, and of the lamps that reach it. */
+static void add_piece(painter *p, const layer *from, uint32_t index, int seen)
 {
-    const gnoi_piece_bins *bins = &p->job->bins;
-    const gnoi_picture_piece *shape = &bins->pieces[index];
+    const gnoi_picture_piece *shape = &from->bins.pieces[index];
     const gnoi_tile *tile = &p->tile;
     uint32_t edge, count;
-    const uint32_t *listed = gnoi_piece_band(bins, shape, tile->y0 / GNOI_TILE_H, &edge, &count);
+    const uint32_t *listed = gnoi_piece_band(&from->bins, shape, tile->y0 / GNOI_TILE_H, &edge, &count);
     int first = clamp_pixel(shape->x0 - tile->x0, tile->width), last = clamp_pixel(shape->x1 - tile->x0, tile->width);
     gno_piece piece;
     gnoi_coverage_start(&p->coverage, tile->x0, tile->y0, tile->width, tile->height);
     for (uint32_t i = 0; i < count; i++) {
-        const gnoi_piece_edge *e = &bins->edges[listed ? listed[i] : edge + i];
+        const gnoi_piece_edge *e = &from->bins.edges[listed ? listed[i] : edge + i];
         gnoi_coverage_edge(&p->coverage, e->ax, e->ay, e->bx, e->by, 1);
     }
     gnoi_coverage_finish(&p->coverage);
-    add_sums(&p->total, &p->coverage, first, last);
-    gno_pieces_get(p->job->pieces, index, &piece);
+    if (seen)
+        add_sums(&p->total, &p->coverage, first, last);
+    gno_pieces_get(from->pieces, index, &piece);
     for (size_t k = 0; k < piece.light_count; k++)
         if (p->columns[piece.lights[k]].state == GNOI_COLUMN_SPLIT)
             add_light(&p->lamp_sums[p->split[piece.lights[k]]], &p->coverage, first, last, piece.passed + 3 * k);
 }
 
-static void add_pieces(painter *p, const uint32_t *items, size_t count)
+static void add_pieces(painter *p, const run *r)
 {
     memset(&p->total, 0, sizeof p->total);
     if (p->split_count > 0)
         memset(p->lamp_sums, 0, p->split_count * sizeof *p->lamp_sums);
-    for (size_t i = 0; i < count; i++)
-        add_piece(p, items[i]);
+    for (size_t i = 0; i < r->count; i++)
+        add_piece(p, &p->job->seen, r->items[i], 1);
+    for (size_t i = 0; i < r->beside_count; i++)
+        if (is_beside(p, r, i))
+            add_piece(p, &p->job->beside, r->beside[i], 0);
 }
 
 /* ---- samples ---------------------------------------------------------------------------------------------------------- */
@@ -211,17 +246,16 @@ static gnoi_slot *set_slot(painter *p, uint32_t index)
     return slot;
 }
 
-/* Paints the pieces of one polygon. Returns 0 when memory fails. */
-static int paint_polygon(painter *p, const uint32_t *items, size_t count)
+/* Paints a run. Returns 0 when memory fails. */
+static int paint_run(painter *p, const run *r)
 {
     gnoi_tile *tile = &p->tile;
-    uint32_t poly = p->job->bins.pieces[items[0]].poly;
-    gnoi_slot *slot = set_slot(p, poly);
-    if (!slot || !sort_lamps(p, items, count))
+    gnoi_slot *slot = set_slot(p, r->poly);
+    if (!slot || !sort_lamps(p, r))
         return 0;
     if (slot->receiver.side == 0)
         return 1;
-    add_pieces(p, items, count);
+    add_pieces(p, r);
     for (int y = 0; y < tile->height; y++)
         for (int x = 0; x < tile->width; x++) {
             if (p->total.area[y][x] > LEAST_AREA)
@@ -229,7 +263,7 @@ static int paint_polygon(painter *p, const uint32_t *items, size_t count)
             if (slot->receiver.poly->opaque)
                 p->covered[y][x] += p->total.area[y][x];
         }
-    tile->spans += (double)count;
+    tile->spans += (double)r->count;
     return !tile->failed;
 }
 
@@ -252,30 +286,53 @@ static void add_background(painter *p)
         }
 }
 
-/* The number of items from `first` on that are pieces of one polygon. */
-static size_t run_of(const gnoi_piece_bins *bins, const uint32_t *items, size_t count)
+static uint32_t source_of(const painter *p, const layer *of, uint32_t item)
 {
-    size_t n = 1;
-    while (n < count && bins->pieces[items[n]].poly == bins->pieces[items[0]].poly)
-        n++;
-    return n;
+    return p->job->frame->scene->prepared.polys[of->bins.pieces[item].poly].source;
+}
+
+/* The next run of tile `index`: the first for r->items NULL. Returns 0 when there is none. */
+static int next_run(const painter *p, size_t index, run *r)
+{
+    const layer *seen = &p->job->seen, *beside = &p->job->beside;
+    const uint32_t *end = seen->bins.items + seen->bins.start[index + 1], *beside_end;
+    const gnoi_picture_piece *first;
+    uint32_t source;
+    r->beside = r->items ? r->beside : beside->pieces ? beside->bins.items + beside->bins.start[index] : NULL;
+    r->items = r->items ? r->items + r->count : seen->bins.items + seen->bins.start[index];
+    r->count = r->beside_count = 0;
+    if (r->items == end)
+        return 0;
+    first = &seen->bins.pieces[*r->items];
+    r->poly = first->poly;
+    r->sheet = first->sheet;
+    while (r->items + r->count < end && seen->bins.pieces[r->items[r->count]].group == first->group)
+        r->count++;
+    if (!beside->pieces)
+        return 1;
+    /* Both sets are in the order of the scene's polygons. */
+    source = source_of(p, seen, *r->items);
+    beside_end = beside->bins.items + beside->bins.start[index + 1];
+    while (r->beside < beside_end && source_of(p, beside, *r->beside) < source)
+        r->beside++;
+    while (r->beside + r->beside_count < beside_end && source_of(p, beside, r->beside[r->beside_count]) == source)
+        r->beside_count++;
+    return 1;
 }
 
 /* Finds what each polygon that is not opaque does to what lies behind it. */
-static int find_veils(painter *p, const uint32_t *items, size_t count)
+static int find_veils(painter *p, size_t index)
 {
-    const gnoi_piece_bins *bins = &p->job->bins;
+    run r = {NULL, 0, NULL, 0, 0, 0};
     p->veils.count = 0;
-    for (size_t i = 0, n; i < count; i += n) {
-        uint32_t poly = bins->pieces[items[i]].poly;
-        n = run_of(bins, items + i, count - i);
-        if (p->job->frame->scene->prepared.polys[poly].opaque)
+    while (next_run(p, index, &r)) {
+        if (p->job->frame->scene->prepared.polys[r.poly].opaque)
             continue;
-        if (!set_slot(p, poly) || !sort_lamps(p, items + i, n))
+        if (!set_slot(p, r.poly) || !sort_lamps(p, &r))
             return 0;
         if (p->tile.slots[0].receiver.side == 0)
             continue;
-        add_pieces(p, items + i, n);
+        add_pieces(p, &r);
         if (!gnoi_piece_veils_add(&p->veils, &p->tile, 0, p->total.area))
             return 0;
     }
@@ -311,18 +368,15 @@ static void take_composed(painter *p)
 
 static int paint_tile(painter *p, size_t index)
 {
-    const gnoi_piece_bins *bins = &p->job->bins;
-    const uint32_t *items = bins->items + bins->start[index];
-    size_t count = bins->start[index + 1] - bins->start[index];
+    run r = {NULL, 0, NULL, 0, 0, 0};
     gnoi_tile_start(&p->tile, index);
     memset(p->covered, 0, sizeof p->covered);
-    if (!find_veils(p, items, count))
+    if (!find_veils(p, index))
         return 0;
     if (p->veils.count > 0)
         memset(p->composed, 0, sizeof p->composed);
-    for (size_t i = 0, n; i < count; i += n) {
-        n = run_of(bins, items + i, count - i);
-        if (!paint_polygon(p, items + i, n))
+    while (next_run(p, index, &r)) {
+        if (!paint_run(p, &r))
             return 0;
         if (p->veils.count > 0)
             compose(p);
@@ -335,19 +389,18 @@ static int paint_tile(painter *p, size_t index)
     return 1;
 }
 
-/* Paints each piece of the tile alone and keeps its sums. */
+/* Paints each run of the tile alone and keeps its sums under its first item. */
 static int sum_tile(painter *p, size_t index)
 {
-    const gnoi_piece_bins *bins = &p->job->bins;
+    run r = {NULL, 0, NULL, 0, 0, 0};
     gnoi_tile *tile = &p->tile;
     gnoi_tile_start(tile, index);
-    for (size_t i = bins->start[index]; i < bins->start[index + 1]; i++) {
-        share *s = &p->job->shares[i];
+    while (next_run(p, index, &r)) {
+        share *s = &p->job->shares[r.items - p->job->seen.bins.items];
         memset(&p->total, 0, sizeof p->total);
-        if (!paint_polygon(p, &bins->items[i], 1))
+        if (!paint_run(p, &r))
             return 0;
         gnoi_tile_flush(tile);
-        memset(s, 0, sizeof *s);
         for (int y = 0; y < tile->height; y++)
             for (int x = 0; x < tile->width; x++) {
                 int pixel = (y + 1) * GNOI_TILE_W + x;
@@ -381,7 +434,7 @@ static gno_status work_on_tiles(paint_job *job, gno_stats *stats)
 {
     gno_context *context = job->frame->scene->context;
     int threads = gnoi_thread_count(job->frame->def.threads);
-    size_t tiles = (size_t)job->bins.tiles_x * (size_t)job->bins.tiles_y;
+    size_t tiles = (size_t)job->seen.bins.tiles_x * (size_t)job->seen.bins.tiles_y;
     gno_status status;
     job->workers = gnoi_calloc(context, (size_t)threads, sizeof *job->workers);
     if (!job->workers)
@@ -400,66 +453,83 @@ static gno_status work_on_tiles(paint_job *job, gno_stats *stats)
     return status;
 }
 
+/* The set of pieces, and what it has beside, onto the picture. */
+static gno_status job_make(paint_job *job, const gnoi_frame_job *frame, const gno_pieces *pieces)
+{
+    gno_status status;
+    memset(job, 0, sizeof *job);
+    job->frame = frame;
+    job->seen.pieces = pieces;
+    job->beside.pieces = gnoi_pieces_beside(pieces);
+    status = gnoi_piece_bins_build(frame->scene, &frame->view, pieces, &job->seen.bins);
+    if (!status && job->beside.pieces)
+        status = gnoi_piece_bins_build(frame->scene, &frame->view, job->beside.pieces, &job->beside.bins);
+    return status;
+}
+
+static void job_free(paint_job *job)
+{
+    gno_context *context = job->frame->scene->context;
+    gnoi_piece_bins_free(context, &job->seen.bins);
+    gnoi_piece_bins_free(context, &job->beside.bins);
+}
+
 gno_status gnoi_paint_visible(gno_scene *scene, gnoi_frame_job *frame, gno_stats *stats)
 {
     gno_visible_def def = gno_visible_def_default();
     gno_pieces *pieces = NULL;
     paint_job job;
     gno_status status;
-    memset(&job, 0, sizeof job);
     def.threads = frame->def.threads;
+    def.split = GNOI_SPLIT_BESIDE;
     status = gno_visible_pieces(scene, &def, &pieces, NULL);
     if (status)
         return status;
-    job.frame = frame;
-    job.pieces = pieces;
-    status = gnoi_piece_bins_build(scene, &frame->view, pieces, &job.bins);
+    status = job_make(&job, frame, pieces);
     if (!status)
         status = work_on_tiles(&job, stats);
-    gnoi_piece_bins_free(scene->context, &job.bins);
+    job_free(&job);
     gno_pieces_destroy(pieces);
     return status;
 }
 
 /* ---- mean colours ----------------------------------------------------------------------------------------------------- */
 
+/* The sums over all tiles by group of pieces, then the mean of each piece. */
 static gno_status add_shares(const paint_job *job, double *means)
 {
     gno_context *context = job->frame->scene->context;
-    size_t count = job->bins.piece_count;
-    double *areas = gnoi_calloc(context, count, sizeof *areas);
-    if (!areas)
+    const gnoi_piece_bins *bins = &job->seen.bins;
+    share *totals = gnoi_calloc(context, bins->piece_count, sizeof *totals);
+    if (!totals)
         return GNO_ERROR_MEMORY;
-    for (size_t i = 0; i < job->bins.item_count; i++) {
-        uint32_t piece = job->bins.items[i];
-        areas[piece] += job->shares[i].area;
+    for (size_t i = 0; i < bins->item_count; i++) {
+        share *sum = &totals[bins->pieces[bins->items[i]].group];
+        sum->area += job->shares[i].area;
         for (int k = 0; k < 3; k++)
-            means[3 * piece + (uint32_t)k] += job->shares[i].rgb[k];
+            sum->rgb[k] += job->shares[i].rgb[k];
     }
-    for (size_t i = 0; i < count; i++)
-        for (size_t k = 0; k < 3 && areas[i] > 0; k++)
-            means[3 * i + k] /= areas[i];
-    gnoi_free(context, areas, count, sizeof *areas);
+    for (size_t i = 0; i < bins->piece_count; i++) {
+        const share *sum = &totals[bins->pieces[i].group];
+        for (size_t k = 0; k < 3; k++)
+            means[3 * i + k] = sum->area > 0 ? sum->rgb[k] / sum->area : 0;
+    }
+    gnoi_free(context, totals, bins->piece_count, sizeof *totals);
     return GNO_OK;
 }
 
 gno_status gnoi_paint_means(gnoi_frame_job *frame, const gno_pieces *pieces, double *means)
 {
     gno_context *context = frame->scene->context;
-    gno_status status;
     paint_job job;
-    memset(&job, 0, sizeof job);
-    job.frame = frame;
-    job.pieces = pieces;
-    memset(means, 0, 3 * gno_pieces_count(pieces) * sizeof *means);
-    status = gnoi_piece_bins_build(frame->scene, &frame->view, pieces, &job.bins);
-    if (status)
-        return status;
-    job.shares = gnoi_calloc(context, job.bins.item_count, sizeof *job.shares);
-    status = job.shares ? work_on_tiles(&job, NULL) : GNO_ERROR_MEMORY;
+    gno_status status = job_make(&job, frame, pieces);
+    if (!status) {
+        job.shares = gnoi_calloc(context, job.seen.bins.item_count, sizeof *job.shares);
+        status = job.shares ? work_on_tiles(&job, NULL) : GNO_ERROR_MEMORY;
+    }
     if (!status)
         status = add_shares(&job, means);
-    gnoi_free(context, job.shares, job.bins.item_count, sizeof *job.shares);
-    gnoi_piece_bins_free(context, &job.bins);
+    gnoi_free(context, job.shares, job.seen.bins.item_count, sizeof *job.shares);
+    job_free(&job);
     return status;
 }

@@ -319,7 +319,7 @@ gno_status gnoi_drawing_make(gno_scene *scene, const gno_vector_def *def, gnoi_d
         d->unit *= 10;
     }
     visible.threads = def->threads;
-    visible.split = 1;
+    visible.split = 2;
     visible.see_through = 0;
     status = gno_visible_pieces(scene, &visible, &d->pieces, NULL);
     if (status == GNO_OK) {

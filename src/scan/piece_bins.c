@@ -59,6 +59,8 @@ static gno_status make_edges(builder *b)
         gnoi_picture_piece *p = &bins->pieces[i];
         gno_pieces_get(b->pieces, i, &piece);
         p->poly = b->pieces->list.pieces[i].prepared;
+        p->sheet = b->pieces->list.pieces[i].sheet;
+        p->group = i == 0 ? 0 : p[-1].group + (p->poly != p[-1].poly || p->sheet != p[-1].sheet);
         p->bands = GNOI_NONE;
         p->edge = (uint32_t)edges;
         p->edge_count = (uint32_t)(piece.ring_start[piece.ring_count] - piece.ring_start[0]);
@@ -185,6 +187,8 @@ static gno_status make_items(gno_context *context, gnoi_piece_bins *bins)
                 bins->items[--bins->start[(size_t)r[1] * (size_t)bins->tiles_x + (size_t)x]] = (uint32_t)i;
     return GNO_OK;
 }
+
+const gno_pieces *gnoi_pieces_beside(const gno_pieces *pieces) { return pieces->beside; }
 
 int gnoi_pieces_fit(const gno_scene *scene, const gno_pieces *pieces)
 {

@@ -18,6 +18,8 @@ typedef struct gnoi_piece_edge {
 
 typedef struct gnoi_picture_piece {
     uint32_t poly;             /* prepared polygon that it is a part of */
+    uint32_t sheet;            /* number of the lights' state among the polygon's */
+    uint32_t group;            /* number, in the set, of the pieces of the same polygon and sheet */
     uint32_t edge, edge_count; /* into gnoi_piece_bins.edges */
     uint32_t bands;            /* of a piece of many edges: tiles_y + 1 offsets into band_edges from here in band_start;
                                   GNOI_NONE: a tile goes through all edges */
@@ -38,6 +40,9 @@ typedef struct gnoi_piece_bins {
     uint32_t *items;
     size_t item_count;
 } gnoi_piece_bins;
+
+/* What the set keeps beside (shadow/piece_set.h), NULL: nothing. */
+const gno_pieces *gnoi_pieces_beside(const gno_pieces *pieces);
 
 /* Whether the pieces can be of this scene, which must be prepared. */
 int gnoi_pieces_fit(const gno_scene *scene, const gno_pieces *pieces);

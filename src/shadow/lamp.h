@@ -9,6 +9,9 @@
 #include "scene/scene.h"
 #include "shadow/frame.h"
 
+/* A value of gno_visible_def.split beyond the public ones: no light splits, what all reach is kept beside (piece_set.h). */
+#define GNOI_SPLIT_BESIDE 3
+
 size_t gnoi_lamps_count(const gno_scene *scene);
 
 /* Of one light alone. lamps: room for gnoi_lamp_count. */

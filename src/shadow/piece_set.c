@@ -28,6 +28,7 @@ static gnoi_piece *new_piece(gnoi_piece_list *list, const gnoi_canvas *canvas)
     piece->ring_count = 0;
     piece->light = list->light_count;
     piece->light_count = 0;
+    piece->sheet = 0;
     return piece;
 }
 
@@ -220,6 +221,7 @@ void gno_pieces_destroy(gno_pieces *pieces)
     context = pieces->list.context;
     gnoi_free(context, pieces->first, pieces->polygon_count + 1, sizeof *pieces->first);
     gnoi_piece_list_free(&pieces->list);
+    gno_pieces_destroy(pieces->beside);
     gnoi_free(context, pieces, 1, sizeof *pieces);
 }
 

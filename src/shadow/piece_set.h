@@ -15,6 +15,7 @@ typedef struct gnoi_piece {
     size_t ring, ring_count, light, light_count;
     double area, centroid[3];
     int side;
+    uint32_t sheet; /* visible pieces of one prepared polygon that the same lights reach have the same number, and follow one another */
 } gnoi_piece;
 
 /* Offsets are into the list's own arrays; ring_start counts points. */
@@ -36,7 +37,11 @@ struct gno_pieces {
     gnoi_piece_list list;
     size_t polygon_count;
     size_t *first; /* polygon_count+1: the pieces of each polygon of the scene */
+    gno_pieces *beside; /* visible pieces: what single lights reach of a sheet that they did not split, one light a piece, the sheet's
+                           number with it; NULL when every light splits */
 };
+
+
 
 void gnoi_piece_list_free(gnoi_piece_list *list);
 

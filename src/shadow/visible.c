@@ -3,9 +3,11 @@
  * Place in the data flow: scene -> prepared -> gnoi_centre of the eye, and of every light that no kept pieces stand for -> for
  * each polygon: visible parts, then light after light each part into what it reaches and the rest -> gno_pieces.
  * An eye is a light here: the same code finds what both see. Parts that the same lights reach are a sheet; a light turns every
- * sheet into at most two, and more only behind transparent casters.
+ * sheet into at most two, and more only behind transparent casters. Of lights that shall not split, the points of an area light for
+ * one, what they reach of each sheet is kept beside, light by light: their number then adds up where it would multiply.
  */
 #include "base/parallel.h"
+#include "scene/validate.h"
 #include "shadow/lamp.h"
 #include "shadow/piece_set.h"
 #include "shadow/receiver.h"
@@ -61,8 +63,9 @@ typedef struct job {
     gnoi_centre *lights; /* one for each lamp; empty where kept pieces serve */
     int worker_count;
     worker *workers;
+    unsigned char *aside; /* for each lamp: it does not split */
     size_t chunk_count;
-    gnoi_piece_list *chunks;
+    gnoi_piece_list *chunks, *beside; /* beside: NULL when every lamp splits */
 } job;
 
 /* ---- sheets --------------------------------------------------------------------------------------------------------------- */
@@ -315,14 +318,9 @@ static gno_status split_by_light(const job *j, worker *w, unsigned light, const 
 
 /* ---- one polygon ------------------------------------------------------------------------------------------------------------- */
 
-static int add_lights(const worker *w, uint32_t of, gnoi_piece_list *list)
+static void reverse_lights(gnoi_piece_list *list, size_t first)
 {
-    size_t first = list->light_count, n;
-    for (uint32_t s = of; s != GNOI_NONE; s = w->states[s].before)
-        if (!gnoi_piece_list_add_light(list, w->states[s].light, w->states[s].passed))
-            return 0;
-    /* The chain runs from the last light to the first. */
-    n = list->light_count - first;
+    size_t n = list->light_count - first;
     for (size_t i = 0; i < n / 2; i++) {
         size_t a = first + i, b = first + n - 1 - i;
         unsigned light = list->lights[a];
@@ -333,6 +331,28 @@ static int add_lights(const worker *w, uint32_t of, gnoi_piece_list *list)
             list->passed[3 * a + (size_t)k] = list->passed[3 * b + (size_t)k];
             list->passed[3 * b + (size_t)k] = passed;
         }
+    }
+}
+
+static int add_lights(const worker *w, uint32_t of, gnoi_piece_list *list)
+{
+    size_t first = list->light_count;
+    for (uint32_t s = of; s != GNOI_NONE; s = w->states[s].before)
+        if (!gnoi_piece_list_add_light(list, w->states[s].light, w->states[s].passed))
+            return 0;
+    /* The chain runs from the last light to the first, those that do not split before those that do. */
+    reverse_lights(list, first);
+    for (size_t i = first + 1; i < list->light_count; i++) {
+        unsigned light = list->lights[i];
+        double passed[3];
+        size_t k = i;
+        memcpy(passed, list->passed + 3 * i, sizeof passed);
+        for (; k > first && list->lights[k - 1] > light; k--) {
+            list->lights[k] = list->lights[k - 1];
+            memcpy(list->passed + 3 * k, list->passed + 3 * (k - 1), sizeof passed);
+        }
+        list->lights[k] = light;
+        memcpy(list->passed + 3 * k, passed, sizeof passed);
     }
     return 1;
 }
@@ -350,8 +370,49 @@ static gno_status emit(const worker *w, const gnoi_receiver_view *r, int whole, 
             size_t before = list->count;
             if (!gnoi_piece_list_add(list, &r->canvas, &shape, k, r->scale) || (list->count > before && !add_lights(w, s->state, list)))
                 return GNO_ERROR_MEMORY;
+            if (list->count > before)
+                list->pieces[before].sheet = (uint32_t)i;
         }
     }
+    return GNO_OK;
+}
+
+/* The number of the sheet in a state; there is one. */
+static uint32_t sheet_in(const sheets *s, uint32_t state_number)
+{
+    uint32_t i = 0;
+    while (s->items[i].state != state_number)
+        i++;
+    return i;
+}
+
+/* Adds what a light reaches of every sheet, where that is neither all nor nothing, to `list`, and leaves the sheets as they are. */
+static gno_status keep_beside(const job *j, worker *w, unsigned light, const gnoi_receiver_view *r, int convex, gnoi_piece_list *list)
+{
+    size_t states_before = w->state_count;
+    int cut = 0;
+    gno_status status = split_by_light(j, w, light, &r->canvas, convex, &cut);
+    gno_shape shape = gnoi_shape_view(&w->now.shape);
+    sheets swap;
+    if (status || !cut)
+        return status;
+    for (size_t i = 0; i < w->now.count; i++) {
+        const sheet *s = &w->now.items[i];
+        const state *of = s->state != GNOI_NONE && s->state >= states_before ? &w->states[s->state] : NULL;
+        for (size_t k = s->first; k < s->first + s->count && of; k++) {
+            size_t before = list->count;
+            if (!gnoi_piece_list_add(list, &r->canvas, &shape, k, r->scale))
+                return GNO_ERROR_MEMORY;
+            if (list->count == before)
+                continue;
+            if (!gnoi_piece_list_add_light(list, light, of->passed))
+                return GNO_ERROR_MEMORY;
+            list->pieces[before].sheet = sheet_in(&w->next, of->before);
+        }
+    }
+    swap = w->now;
+    w->now = w->next;
+    w->next = swap;
     return GNO_OK;
 }
 
@@ -386,7 +447,20 @@ static gno_status see_region(const job *j, worker *w, uint32_t index, gnoi_recei
     return status || gnoi_shape_append(&w->region, &parts, 0, parts.polygon_count) ? status : GNO_ERROR_MEMORY;
 }
 
-static gno_status see_polygon(const job *j, worker *w, uint32_t index, gnoi_piece_list *list)
+/* Splits the sheets by the lights that split, and keeps what the others reach beside. */
+static gno_status see_lights(const job *j, worker *w, const gnoi_receiver_view *r, int convex, int *cut, gnoi_piece_list *beside)
+{
+    gno_status status = GNO_OK;
+    for (size_t i = 0; i < j->lamp_count && !status; i++)
+        if (!j->aside[i])
+            status = split_by_light(j, w, (unsigned)i, &r->canvas, convex, cut);
+    for (size_t i = 0; i < j->lamp_count && !status; i++)
+        if (j->aside[i])
+            status = keep_beside(j, w, (unsigned)i, r, convex, beside);
+    return status;
+}
+
+static gno_status see_polygon(const job *j, worker *w, uint32_t index, gnoi_piece_list *list, gnoi_piece_list *beside)
 {
     const gnoi_stand *s = &j->eye.stands[index];
     gnoi_receiver_view r;
@@ -408,8 +482,8 @@ static gno_status see_polygon(const job *j, worker *w, uint32_t index, gnoi_piec
     clear_sheets(&w->now);
     if (!add_sheet(j->scene->context, &w->now, &region, 0, region.polygon_count, GNOI_NONE))
         return GNO_ERROR_MEMORY;
-    for (size_t i = 0; i < j->lamp_count && j->def.split && !status; i++)
-        status = split_by_light(j, w, (unsigned)i, &r.canvas, convex, &cut);
+    if (j->def.split)
+        status = see_lights(j, w, &r, convex, &cut, beside);
     return status ? status : emit(w, &r, whole && !cut, list);
 }
 
@@ -420,8 +494,10 @@ static gno_status see_chunk(void *user, int worker_number, size_t piece)
     gno_status status = GNO_OK;
     end = end < j->scene->prepared.poly_count ? end : j->scene->prepared.poly_count;
     j->chunks[piece].context = j->scene->context;
+    if (j->beside)
+        j->beside[piece].context = j->scene->context;
     for (size_t i = first; i < end && !status; i++)
-        status = see_polygon(j, &j->workers[worker_number], (uint32_t)i, &j->chunks[piece]);
+        status = see_polygon(j, &j->workers[worker_number], (uint32_t)i, &j->chunks[piece], j->beside ? &j->beside[piece] : NULL);
     return status;
 }
 
@@ -456,6 +532,24 @@ static void worker_free(gno_context *context, worker *w)
     gnoi_free(context, w->states, w->state_capacity, sizeof *w->states);
 }
 
+/* Marks the lamps that do not split; 0 when memory fails. */
+static int mark_aside(job *j)
+{
+    const gno_scene *scene = j->scene;
+    size_t n = 0, kept = 0;
+    j->aside = gnoi_calloc(scene->context, j->lamp_count, 1);
+    for (size_t i = 0; i < scene->light_count && j->aside; i++) {
+        size_t points = gnoi_light_points(&scene->lights[i].light);
+        for (size_t k = 0; k < points; k++, n++) {
+            j->aside[n] = j->def.split == GNOI_SPLIT_BESIDE || (j->def.split == 2 && points > 1);
+            kept += j->aside[n];
+        }
+    }
+    if (kept > 0)
+        j->beside = gnoi_calloc(scene->context, j->chunk_count, sizeof *j->beside);
+    return j->aside && (j->beside || kept == 0);
+}
+
 static gno_status job_make(job *j)
 {
     gno_context *context = j->scene->context;
@@ -472,7 +566,7 @@ static gno_status job_make(job *j)
     j->chunks = gnoi_calloc(context, j->chunk_count, sizeof *j->chunks);
     j->lamps = gnoi_calloc(context, j->lamp_count, sizeof *j->lamps);
     j->lights = gnoi_calloc(context, j->lamp_count, sizeof *j->lights);
-    if (status || !j->workers || !j->chunks || !j->lamps || !j->lights)
+    if (status || !j->workers || !j->chunks || !j->lamps || !j->lights || !mark_aside(j))
         return status ? status : GNO_ERROR_MEMORY;
     for (int i = 0; i < j->worker_count && !status; i++)
         status = worker_make(j->scene, &j->workers[i]);
@@ -491,11 +585,16 @@ static void job_free(job *j)
     for (size_t i = 0; j->chunks && i < j->chunk_count; i++)
         if (j->chunks[i].context)
             gnoi_piece_list_free(&j->chunks[i]);
+    for (size_t i = 0; j->beside && i < j->chunk_count; i++)
+        if (j->beside[i].context)
+            gnoi_piece_list_free(&j->beside[i]);
     for (size_t i = 0; j->lights && i < j->lamp_count; i++)
         gnoi_centre_free(&j->lights[i]);
     gnoi_centre_free(&j->eye);
     gnoi_free(context, j->workers, (size_t)j->worker_count, sizeof *j->workers);
     gnoi_free(context, j->chunks, j->chunk_count, sizeof *j->chunks);
+    gnoi_free(context, j->beside, j->chunk_count, sizeof *j->beside);
+    gnoi_free(context, j->aside, j->lamp_count, 1);
     gnoi_free(context, j->lamps, j->lamp_count, sizeof *j->lamps);
     gnoi_free(context, j->lights, j->lamp_count, sizeof *j->lights);
 }
@@ -543,6 +642,13 @@ static gno_status run(job *j, gno_pieces **pieces, gno_visible_summary *sum)
     }
     if (!status)
         status = gnoi_pieces_join(j->scene->context, j->chunks, j->chunk_count, j->scene->polygon_count, pieces);
+    if (!status && j->beside) {
+        status = gnoi_pieces_join(j->scene->context, j->beside, j->chunk_count, j->scene->polygon_count, &(*pieces)->beside);
+        if (status) {
+            gno_pieces_destroy(*pieces);
+            *pieces = NULL;
+        }
+    }
     sum->piece_seconds = gnoi_now() - t0;
     return status;
 }
