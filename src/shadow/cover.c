@@ -14,6 +14,9 @@
 /* Overlaps thinner than this share of the region's size are rounding. */
 #define THIN 1e-13
 
+/* Edges shorter than this share of the region's size, as cuts leave them, have no direction that parts anything. */
+#define SHORT 1e-6
+
 /* Corners of regions and shadows for which the tests of convex polygons are worth their time. */
 #define FEW 16
 
@@ -262,7 +265,7 @@ static void set_region(const gno_shape *shape, int convex, double slack, region 
 /* How points lie to a convex ring: all inside or on it, all outside one of its edges or on it, or otherwise. */
 typedef enum relation { ALL_INSIDE, ALL_OUTSIDE, MIXED } relation;
 
-static relation relate(const point2 *ring, int count, const point2 *points, int point_count, double slack_length)
+static relation relate(const point2 *ring, int count, const point2 *points, int point_count, double slack_length, double shortest)
 {
     relation r = ALL_INSIDE;
     double turn = 0;
@@ -279,7 +282,7 @@ static relation relate(const point2 *ring, int count, const point2 *points, int 
             if (s < -slack)
                 r = MIXED;
         }
-        if (out == point_count)
+        if (out == point_count && fabs(ex) + fabs(ey) > shortest)
             return ALL_OUTSIDE;
     }
     return r;
@@ -297,9 +300,9 @@ static relation relate_ring(const ring_points *r, const region *to)
         ring[i].x = r->now[i].x / r->now[i].w;
         ring[i].y = r->now[i].y / r->now[i].w;
     }
-    if (relate(to->corner, to->count, ring, (int)r->count, to->slack) == ALL_OUTSIDE)
+    if (relate(to->corner, to->count, ring, (int)r->count, to->slack, SHORT * to->size) == ALL_OUTSIDE)
         return ALL_OUTSIDE;
-    return relate(ring, (int)r->count, to->corner, to->count, to->slack);
+    return relate(ring, (int)r->count, to->corner, to->count, to->slack, SHORT * to->size);
 }
 
 /* The values by which a ring is cut: the region's reach on four sides, and away from the centre's own height. */
@@ -558,7 +561,7 @@ static gnoi_cover_state cover_cone(const gnoi_canvas *canvas, gnoi_cover *cover,
             cone[i].x = r.now[i].x / r.now[i].w;
             cone[i].y = r.now[i].y / r.now[i].w;
         }
-        how = relate(cone, (int)r.count, to->corner, to->count, to->slack);
+        how = relate(cone, (int)r.count, to->corner, to->count, to->slack, SHORT * to->size);
     }
     if (how != MIXED)
         return how == ALL_INSIDE ? GNOI_COVER_NONE : GNOI_COVER_ALL;

@@ -1,6 +1,9 @@
 /* receiver.c -- see receiver.h. */
 #include "shadow/receiver.h"
 
+/* An outline whose area is less than so many times its length times the shift of its corners is measured by the clipper. */
+#define BENT 100
+
 /* Twice the area of a ring about n. */
 static double ring_area(const gno_scene *scene, uint32_t first, uint32_t end, vec3 n)
 {
@@ -46,20 +49,35 @@ gno_status gnoi_true_area(gnoi_parter *p, const gnoi_centre *centre, uint32_t in
     return gnoi_parter_area(p, &view, area);
 }
 
-/* 1 when the corners lie on the plane but for rounding, so that every centre sees the true outline. */
-static int is_planar(const gnoi_canvas *canvas)
+/* How far off the plane the corners lie. */
+static double bend_of(const gnoi_canvas *canvas)
 {
     const gno_scene *scene = canvas->centre->scene;
     const gnoi_poly *poly = &scene->prepared.polys[canvas->index];
+    double bend = 0;
     for (uint32_t i = 0; i < poly->corner_count; i++)
-        if (fabs(v3_dot(canvas->n, v3_sub(gnoi_corner_at(scene, poly->corner + i), canvas->origin))) > canvas->centre->noise)
-            return 0;
-    return 1;
+        bend = fmax(bend, fabs(v3_dot(canvas->n, v3_sub(gnoi_corner_at(scene, poly->corner + i), canvas->origin))));
+    return bend;
+}
+
+/* 1 when a slanting ray moves corners off the plane so far that the outline seen need not be as simple as the true one. */
+static int is_bent(const gnoi_receiver_view *r, double bend)
+{
+    const double *p = r->outline.points;
+    double around = 0;
+    if (bend <= r->canvas.centre->noise)
+        return 0;
+    for (size_t i = 0, n = r->outline.ring_start[1]; i < n; i++) {
+        const double *a = p + 2 * i, *b = p + 2 * (i + 1 < n ? i + 1 : 0);
+        around += hypot(b[0] - a[0], b[1] - a[1]);
+    }
+    return BENT * bend * hypot(r->canvas.along_u, r->canvas.along_v) * around > r->seen.area;
 }
 
 gno_status gnoi_receiver_make(gnoi_parter *p, const gnoi_centre *centre, uint32_t index, gnoi_receiver_view *r)
 {
     gno_status status;
+    double bend;
     r->canvas = gnoi_canvas_make(centre, index);
     gnoi_shape_clear(&p->outline);
     if (!gnoi_canvas_outline(&r->canvas, &p->cover, &p->outline, &r->whole))
@@ -72,9 +90,10 @@ gno_status gnoi_receiver_make(gnoi_parter *p, const gnoi_centre *centre, uint32_
     if (status || r->outline.polygon_count == 0)
         return status;
     r->seen = gnoi_shape_moment(&r->outline, 0);
-    if (!r->convex) {
+    bend = bend_of(&r->canvas);
+    if (!r->convex || is_bent(r, bend)) {
         double area = r->true_area, simple = r->seen.area;
-        if (!r->whole || !is_planar(&r->canvas))
+        if (!r->whole || bend > centre->noise)
             status = gnoi_parter_area(p, &r->outline, &area);
         r->seen.area = area;
         r->seen.x *= simple > 0 ? area / simple : 0;

@@ -311,6 +311,21 @@ static void test_sides(void **state)
     stage_drop(&s);
 }
 
+/* A roof that reaches below the wall's own plane is cut to a shadow with a repeated corner, over the wall's upper part. */
+static void test_cut_roof(void **state)
+{
+    gno_lit_row rows[MOST_ROWS];
+    stage s = stage_make(NULL);
+    (void)state;
+    add_plate(&s, 5.944, 1.524, 5.791, 0, 0, -2.438, 0, 3.048, 0, 0);
+    add_plate(&s, 0, 18.288, 6.096, 0, -18.288, 0, 6.096, 0, 0, 0);
+    add_sun(&s, -0.356255, -0.798801, 0.95);
+    light_up(&s, 0, rows);
+    /* The roof's edge y = 0 falls to the wall at z = 6.096 - y 0.95 / 0.798801. */
+    assert_near(rows[0].lit_area, 0.5 * (6.096 - 1.524 * 0.95 / 0.798801 - 3.353) * ((6.096 - 3.353) * 0.798801 / 0.95 - 1.524), 1e-11);
+    stage_drop(&s);
+}
+
 /* A plate through the floor: only what stands above shades. */
 static void test_crossing_planes(void **state)
 {
@@ -557,7 +572,7 @@ int main(void)
         cmocka_unit_test(test_cube_on_plane), cmocka_unit_test(test_crossing_shadows), cmocka_unit_test(test_point_light),
         cmocka_unit_test(test_room),          cmocka_unit_test(test_spot),      cmocka_unit_test(test_hole),
         cmocka_unit_test(test_glass),         cmocka_unit_test(test_coplanar),  cmocka_unit_test(test_sides),
-        cmocka_unit_test(test_crossing_planes), cmocka_unit_test(test_expanded), cmocka_unit_test(test_options),
+        cmocka_unit_test(test_crossing_planes), cmocka_unit_test(test_cut_roof), cmocka_unit_test(test_expanded), cmocka_unit_test(test_options),
         cmocka_unit_test(test_arguments),     cmocka_unit_test(test_every_allocation_fails), cmocka_unit_test(test_cancel),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
