@@ -3,6 +3,7 @@
 #   make            libraries and tool in build/
 #   make demo       what is missing from the system, then the above, then a picture of every scene in out/
 #   make test       the same, then all tests; the last line counts them
+#   make gallery    docs/gallery.md with a small picture of every scene
 #   make bench      measurements        make check-asan     tests under the address and undefined-behaviour sanitizers
 #   make install    PREFIX, DESTDIR     make check-headers  the public headers in every C and C++ they promise
 
@@ -162,6 +163,11 @@ demo-pictures: all
 	  $(BUILD)/gnomon render $$scene -o $$picture; \
 	done
 	@if [ -n '$(SCENES)' ]; then echo 'The pictures are in $(OUT)/.'; fi
+
+# Every scene small, and a page that shows them all: kept in the tree, so that the page can be read where the sources are.
+.PHONY: gallery
+gallery: all
+	@GNOMON='$(abspath $(BUILD)/gnomon)' sh docs/gallery.sh
 
 # ---- tests -----------------------------------------------------------------------------------------------------------
 test:
