@@ -38,7 +38,7 @@ GNO_API const char *gno_version(void);
 
 typedef enum gno_status {
     GNO_OK = 0,
-    GNO_ERROR_MEMORY,    /* the allocator returned NULL */
+    GNO_ERROR_MEMORY,    /* the allocator returned NULL, or max_memory would be exceeded */
     GNO_ERROR_ARGUMENT,  /* a NULL, an index or a value that the call does not accept */
     GNO_ERROR_LIMIT,     /* a count or size beyond the stated limits */
     GNO_ERROR_INPUT,     /* a file or scene that is not well formed; the message names file, line and key */
@@ -72,8 +72,9 @@ typedef enum gno_log_level { GNO_LOG_INFO = 0, GNO_LOG_WARNING = 1 } gno_log_lev
 /* Receives remarks that are not failures (skipped polygons and the like). Silent when NULL. */
 typedef void (*gno_log_fn)(void *user, gno_log_level level, const char *text);
 
-/* Called now and then while a long call runs, fraction in [0,1]; non-zero stops the call with GNO_ERROR_CANCELLED.
- * Always called from the thread that made the call. */
+/* Called every 10 milliseconds or so while a long call runs, fraction of the stage in [0,1]; non-zero stops the call with
+ * GNO_ERROR_CANCELLED. Always called from the thread that made the call. stage is constant text of the library, or what a companion
+ * passed to gno_context_progress. It must not call back into the context. */
 typedef int (*gno_progress_fn)(void *user, const char *stage, double fraction);
 
 typedef struct gno_context_def {
@@ -83,6 +84,7 @@ typedef struct gno_context_def {
     void *log_user;
     gno_progress_fn progress; /* NULL: none */
     void *progress_user;
+    size_t max_memory; /* bytes that the context may hold, by its account; 0 (default): no ceiling */
 } gno_context_def;
 
 GNO_API gno_context_def gno_context_def_default(void);
@@ -104,6 +106,10 @@ GNO_API void gno_context_log(gno_context *context, gno_log_level level, const ch
 
 /* Sets the context's message and returns status unchanged; for the file library and other companions of the engine. */
 GNO_API gno_status gno_context_fail(gno_context *context, gno_status status, const char *text);
+
+/* Asks the progress callback whether to go on, unless it was asked just now: GNO_OK or CANCELLED (message set). stage is constant
+ * text, which is kept. On the thread that made the call; for companions of the engine that take long. Errors: CANCELLED. */
+GNO_API gno_status gno_context_progress(gno_context *context, const char *stage, double fraction);
 
 /* Memory from the context's allocator (see gno_alloc_fn); NULL when it fails. For companions of the engine. */
 GNO_API void *gno_context_realloc(gno_context *context, void *block, size_t old_size, size_t new_size);
@@ -460,6 +466,13 @@ typedef struct gno_stats {
  * Errors: MEMORY, ARGUMENT, CANCELLED; rgb is then partly written. */
 GNO_API gno_status gno_render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats);
 
+/* Receives row y of the picture, `width` linear RGB triples, valid during the call; non-zero stops the render with CANCELLED. */
+typedef int (*gno_row_fn)(void *user, int y, const float *rgb);
+
+/* As gno_render, byte for byte, but hands the picture out row by row, top to bottom, on the caller's thread, and holds memory for a
+ * band of rows only (the scan-line engine; layers, if asked for, are whole). Errors: as gno_render. */
+GNO_API gno_status gno_render_rows(gno_scene *scene, const gno_render_def *def, gno_row_fn row, void *user, gno_stats *stats);
+
 /* ---- splitting one span by shadow polygons ---------------------------------------------------------------------- */
 
 /* Where one shadow polygon of the column meets the span's line: [x0,x1), and the share of light that passes the caster. */
@@ -492,6 +505,40 @@ GNO_API size_t gno_span_split(double x0, double x1, gno_shadow_interval *shadows
  * that are not finite, levels out of range). */
 GNO_API gno_status gno_fractal_dimension(gno_context *context, size_t count, const double *points, int magnification, int first_level,
                                          int levels, double *dimension);
+
+/* ---- visible spans of the picture's sample lines ------------------------------------------------------------------ */
+
+/* One visible span: where the line sees one polygon. Depth is along the view direction; its inverse (for an orthographic view depth
+ * itself) is linear in x between the ends. The parts of light j, by which shadow polygons split the span, are
+ * parts[part_start[j]] .. parts[part_start[j+1]-1]: in order, without gaps, the first begins at x0, the last ends at x1. */
+typedef struct gno_span {
+    unsigned polygon;         /* number in the scene */
+    int back;                 /* 1: its back is seen, in the winding of its outer ring */
+    double x0, x1;            /* picture coordinates, x0 < x1 */
+    double depth0, depth1;
+    double tint[3];           /* share of its colour that reaches the eye: 1 where no see-through surface lies before it */
+    const size_t *part_start; /* light_count+1 offsets */
+    const gno_span_part *parts;
+} gno_span;
+
+/* A sample line of the picture: y is its height in picture coordinates, in pixel row `row`; of the row's lines it is the
+ * `line`th from the top. light_count: as gno_stats.lights; an area light counts as its points, one after the other. */
+typedef struct gno_span_line {
+    int row, line;
+    double y;
+    int light_count;
+    size_t span_count;
+    const gno_span *spans;
+} gno_span_line;
+
+/* All is valid during the call; non-zero stops with CANCELLED. */
+typedef int (*gno_spans_fn)(void *user, const gno_span_line *line);
+
+/* Hands out the visible spans of every sample line, from the top down, on the caller's thread: def->base_lines lines in each
+ * pixel row (the other fields but threads are not used). Spans are in the order of x0; they overlap only where surfaces let light
+ * through, front before back there. What is not covered by a span is background. A light's softness is not applied: parts are
+ * cut where shadows begin and end. The same for any number of threads. Errors: as gno_render. */
+GNO_API gno_status gno_render_spans(gno_scene *scene, const gno_render_def *def, gno_spans_fn spans, void *user, gno_stats *stats);
 
 #ifdef __cplusplus
 }

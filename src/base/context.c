@@ -2,12 +2,13 @@
  *
  * Place: the root; everything else allocates, fails and warns through here.
  * Invariants: `used` is the sum of the sizes of all blocks handed out and not yet freed, the context's own included;
- * `peak` is the largest value `used` ever had. Both are atomic, for worker threads allocate too; the message and the
- * callbacks belong to the calling thread alone.
+ * `peak` is the largest value `used` ever had; neither exceeds the ceiling. Both are atomic, for worker threads allocate too; the
+ * message and the callbacks belong to the calling thread alone.
  * Source: allocator with user and old size after Lua's lua_Alloc; message kept in a fixed buffer, so failing cannot fail.
  */
 #include "base/context.h"
 
+#include <pthread.h>
 #include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -21,6 +22,12 @@ struct gno_context {
     gno_context_def def;
     atomic_size_t used;
     atomic_size_t peak;
+    atomic_int refused;  /* the ceiling, not the allocator, refused memory last */
+    atomic_int stopped;  /* the callback asked to stop, and no failure has been made of it yet */
+    pthread_t caller;    /* the thread that may ask the callback */
+    double asked;        /* when it did last, seconds */
+    const char *stage;   /* what it was told */
+    double fraction;
     char message[MESSAGE_SIZE];
 };
 
@@ -61,18 +68,29 @@ static void *default_alloc(void *user, void *block, size_t old_size, size_t new_
     return realloc(block, new_size);
 }
 
-static void account(gno_context *context, size_t old_size, size_t new_size)
+static void raise_peak(gno_context *context, size_t used)
+{
+    size_t peak = atomic_load_explicit(&context->peak, memory_order_relaxed);
+    while (used > peak && !atomic_compare_exchange_weak_explicit(&context->peak, &peak, used, memory_order_relaxed,
+                                                                 memory_order_relaxed)) {
+    }
+}
+
+/* Enters a change of size before it is made, so that threads together cannot pass the ceiling; 0 when it would. */
+static int account(gno_context *context, size_t old_size, size_t new_size)
 {
     /* Unsigned wrap-around makes one addition serve growth and shrinking alike. */
     size_t change = new_size - old_size;
     size_t used = atomic_fetch_add_explicit(&context->used, change, memory_order_relaxed) + change;
-    size_t peak = atomic_load_explicit(&context->peak, memory_order_relaxed);
-    while (used > peak && new_size > old_size) {
-        if (atomic_compare_exchange_weak_explicit(&context->peak, &peak, used, memory_order_relaxed,
-                                                  memory_order_relaxed)) {
-            break;
-        }
+    if (new_size <= old_size) {
+        return 1;
     }
+    if (context->def.max_memory > 0 && (used > context->def.max_memory || used < change)) {
+        atomic_fetch_sub_explicit(&context->used, change, memory_order_relaxed);
+        atomic_store_explicit(&context->refused, 1, memory_order_relaxed);
+        return 0;
+    }
+    return 1;
 }
 
 void *gnoi_realloc(gno_context *context, void *block, size_t old_count, size_t count, size_t size)
@@ -86,12 +104,15 @@ void *gnoi_realloc(gno_context *context, void *block, size_t old_count, size_t c
         }
         return NULL;
     }
-    if (size == 0 || count > (size_t)PTRDIFF_MAX / size) {
+    if (size == 0 || count > (size_t)PTRDIFF_MAX / size || !account(context, old_size, count * size)) {
         return NULL;
     }
     fresh = context->def.alloc(context->def.alloc_user, block, old_size, count * size);
-    if (fresh) {
-        account(context, old_size, count * size);
+    if (!fresh) {
+        atomic_fetch_sub_explicit(&context->used, count * size - old_size, memory_order_relaxed);
+        atomic_store_explicit(&context->refused, 0, memory_order_relaxed);
+    } else if (count * size > old_size) {
+        raise_peak(context, atomic_load_explicit(&context->used, memory_order_relaxed));
     }
     return fresh;
 }
@@ -174,13 +195,19 @@ gno_status gno_context_create(const gno_context_def *def, gno_context **context)
         used.alloc = default_alloc;
         used.alloc_user = NULL;
     }
-    fresh = used.alloc(used.alloc_user, NULL, 0, sizeof *fresh);
+    fresh = used.max_memory == 0 || used.max_memory >= sizeof *fresh ? used.alloc(used.alloc_user, NULL, 0, sizeof *fresh) : NULL;
     if (!fresh) {
         return GNO_ERROR_MEMORY;
     }
     fresh->def = used;
     atomic_init(&fresh->used, sizeof *fresh);
     atomic_init(&fresh->peak, sizeof *fresh);
+    atomic_init(&fresh->refused, 0);
+    atomic_init(&fresh->stopped, 0);
+    fresh->caller = pthread_self();
+    fresh->asked = 0;
+    fresh->stage = "";
+    fresh->fraction = 0;
     fresh->message[0] = '\0';
     *context = fresh;
     return GNO_OK;
@@ -205,6 +232,14 @@ gno_status gno_context_fail(gno_context *context, gno_status status, const char 
     return gnoi_fail(context, status, "%s", text ? text : "");
 }
 
+/* "... (the memory ceiling of 64 MiB is reached)" */
+static void add_ceiling(const gno_context *context, char *text, size_t size)
+{
+    size_t length = strlen(text);
+    snprintf(text + length, size - length, "%s(the memory ceiling of %.6g MiB is reached)", length > 0 ? " " : "",
+             (double)context->def.max_memory / 1048576);
+}
+
 gno_status gnoi_fail(gno_context *context, gno_status status, const char *format, ...)
 {
     char text[MESSAGE_SIZE]; /* an argument may be the present message, so it must not be overwritten while it is read */
@@ -217,6 +252,15 @@ gno_status gnoi_fail(gno_context *context, gno_status status, const char *format
         text[0] = '\0';
     }
     va_end(arguments);
+    if (atomic_exchange(&context->stopped, 0)) {
+        status = GNO_ERROR_CANCELLED;
+        snprintf(text, sizeof text, "%s: cancelled", context->stage);
+    }
+    if (status != GNO_ERROR_MEMORY) {
+        atomic_store_explicit(&context->refused, 0, memory_order_relaxed);
+    } else if (atomic_load_explicit(&context->refused, memory_order_relaxed) && !strstr(text, "memory ceiling")) {
+        add_ceiling(context, text, sizeof text);
+    }
     memcpy(context->message, text, strlen(text) + 1);
     return status;
 }
@@ -239,12 +283,51 @@ void gnoi_warn(gno_context *context, const char *format, ...)
     va_end(arguments);
 }
 
+/* ---- progress and cancelling ------------------------------------------------------------------------------------ */
+
+void gnoi_begin(gno_context *context, const char *stage)
+{
+    atomic_store(&context->stopped, 0);
+    atomic_store(&context->refused, 0);
+    context->caller = pthread_self();
+    context->stage = stage;
+    context->fraction = 0;
+}
+
+void gnoi_set_fraction(gno_context *context, double fraction) { context->fraction = fraction; }
+
+int gnoi_stopped(gno_context *context)
+{
+    double now;
+    if (atomic_load_explicit(&context->stopped, memory_order_relaxed)) {
+        return 1;
+    }
+    if (!context->def.progress || !pthread_equal(context->caller, pthread_self())) {
+        return 0;
+    }
+    now = gnoi_now();
+    if (now - context->asked < GNOI_POLL_SECONDS) {
+        return 0;
+    }
+    context->asked = now;
+    if (context->def.progress(context->def.progress_user, context->stage, context->fraction) == 0) {
+        return 0;
+    }
+    atomic_store(&context->stopped, 1);
+    return 1;
+}
+
 gno_status gnoi_progress(gno_context *context, const char *stage, double fraction)
 {
-    if (context->def.progress && context->def.progress(context->def.progress_user, stage, fraction) != 0) {
-        return gnoi_fail(context, GNO_ERROR_CANCELLED, "%s: cancelled", stage);
-    }
-    return GNO_OK;
+    context->caller = pthread_self();
+    context->stage = stage;
+    context->fraction = fraction;
+    return gnoi_stopped(context) ? gnoi_fail(context, GNO_ERROR_CANCELLED, "%s: cancelled", stage) : GNO_OK;
+}
+
+gno_status gno_context_progress(gno_context *context, const char *stage, double fraction)
+{
+    return context ? gnoi_progress(context, stage ? stage : "", fraction) : GNO_ERROR_ARGUMENT;
 }
 
 double gnoi_now(void)

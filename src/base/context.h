@@ -33,8 +33,22 @@ void gnoi_warn(gno_context *context, const char *format, ...)
 #endif
     ;
 
-/* Asks the progress callback; GNO_OK or GNO_ERROR_CANCELLED (message set). */
+/* Cancelling. A long call says where it is by gnoi_progress on the caller's thread, and asks gnoi_stopped in every loop that may
+ * take longer than some milliseconds, on any thread. When it says 1, stop and report a failure as if memory had run out: the
+ * gnoi_fail at the end of every such path, or gnoi_parallel, makes GNO_ERROR_CANCELLED of it. Either looks at the clock and asks the
+ * progress callback every GNOI_POLL_SECONDS at most, on the caller's thread alone; a question costs some 30 nanoseconds. */
+#define GNOI_POLL_SECONDS 0.01
 gno_status gnoi_progress(gno_context *context, const char *stage, double fraction);
+int gnoi_stopped(gno_context *context);
+
+/* The same in a loop of small steps: asks at every 512th. */
+static inline int gnoi_stopped_at(gno_context *context, size_t step) { return step % 512 == 511 && gnoi_stopped(context); }
+
+/* What the next question tells of the stage at hand; on the caller's thread. */
+void gnoi_set_fraction(gno_context *context, double fraction);
+
+/* Forgets a stop that an earlier call was told; first thing in a public call. */
+void gnoi_begin(gno_context *context, const char *stage);
 
 /* Monotonic wall-clock seconds. */
 double gnoi_now(void);

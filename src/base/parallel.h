@@ -16,4 +16,8 @@ int gnoi_thread_count(int threads);
 typedef gno_status (*gnoi_piece_fn)(void *user, int worker, size_t piece);
 gno_status gnoi_parallel(gno_context *context, int threads, size_t pieces, const char *stage, gnoi_piece_fn body, void *user);
 
+/* The same for the pieces [first, first + pieces) of a whole of `total`, as which progress counts them. */
+gno_status gnoi_parallel_part(gno_context *context, int threads, size_t first, size_t pieces, size_t total, const char *stage,
+                              gnoi_piece_fn body, void *user);
+
 #endif

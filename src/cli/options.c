@@ -5,6 +5,7 @@
 
 #include <errno.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -196,6 +197,28 @@ int parse_size(const char *text, int *width, int *height)
     }
     *x = '\0';
     return parse_int(copy, 1, GNO_MAX_IMAGE_SIDE, width) && parse_int(x + 1, 1, GNO_MAX_IMAGE_SIDE, height);
+}
+
+int parse_bytes(const char *text, size_t *value)
+{
+    static const char letters[] = "kKmMgGtT";
+    char *end;
+    double number = strtod(text, &end);
+    const char *letter = *end != '\0' ? strchr(letters, *end) : NULL;
+    if (end == text) {
+        return 0;
+    }
+    for (int i = 0; letter != NULL && i <= (letter - letters) / 2; i++) {
+        number *= 1024.0;
+    }
+    end += letter != NULL;
+    end += end[0] == 'i' && end[1] == 'B' && letter != NULL;
+    end += *end == 'B';
+    if (*end != '\0' || !(number >= 1.0) || number >= (double)SIZE_MAX) {
+        return 0;
+    }
+    *value = (size_t)number;
+    return 1;
 }
 
 int parse_setting(char *text, gno_setting *setting)

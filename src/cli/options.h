@@ -46,6 +46,9 @@ int parse_real(const char *text, double *value);
 /* WIDTHxHEIGHT, each from 1 to GNO_MAX_IMAGE_SIDE. */
 int parse_size(const char *text, int *width, int *height);
 
+/* Bytes: a number with K, M, G or T behind it for powers of 1024 ("512M", "1.5G", "64MiB"); at least 1. */
+int parse_bytes(const char *text, size_t *value);
+
 /* KEY=VALUE, cut in place at the first equals sign; the setting points into the text. */
 int parse_setting(char *text, gno_setting *setting);
 

@@ -15,7 +15,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum option_id { OUTPUT, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, AOV, RANKS, SET, STATS, QUIET, HELP };
+enum option_id { OUTPUT, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, AOV, RANKS, MEMORY, SET, STATS, QUIET, HELP };
 
 static const option options[] = {
     [OUTPUT] = {"output", 'o', "FILE", "picture, by extension: .png (sRGB), .exr (linear), .pfm (linear);\n"
@@ -36,6 +36,8 @@ static const option options[] = {
                                 "object and material (6)"},
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. camera.eye=[1,2,3]; may be given\n"
                                     "several times"},
+    [MEMORY] = {"memory", 0, "SIZE", "stop with a message before more than SIZE bytes are held, e.g. 512M\n"
+                                     "or 2G (what the file libraries take for themselves is not counted)"},
     [STATS] = {"stats", 0, "FILE", "one JSON object: seconds per stage, counts, peak memory; \"-\" is\n"
                                    "standard output"},
     [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
@@ -56,6 +58,7 @@ typedef struct job {
     gno_render_def def;
     layers_wish layers;
     const char *stats_path;
+    size_t memory; /* ceiling, 0: none */
     int quiet;
 } job;
 
@@ -138,6 +141,8 @@ static int take_option(job *work, int id, char *value)
         return parse_int(value, 1, GNO_MAX_RANKS, &work->layers.ranks)
                    ? -1
                    : usage("render", "--ranks %s: not a number from 1 to %d", value, GNO_MAX_RANKS);
+    case MEMORY:
+        return parse_bytes(value, &work->memory) ? -1 : usage("render", "--memory %s: not a number of bytes, as 512M or 2G", value);
     case SET:
         return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("render", "--set %s: not KEY=VALUE", value);
     case STATS:
@@ -220,7 +225,7 @@ static gno_status load(const job *work, gno_context *context, gno_scene **scene)
 }
 
 /* A stream leaves nothing behind, and a reader that does not read could hold it up for ever: there a signal ends the
- * program at once. A file is finished, which takes little time, and the program ends after it. */
+ * program at once. A file that is being written is given up and leaves nothing behind. */
 static gno_status write_pictures(const job *work, gno_scene *scene, const float *rgb, const gno_layers *layers)
 {
     gno_context *context = gno_scene_context(scene);
@@ -250,6 +255,19 @@ static gno_status write_pictures(const job *work, gno_scene *scene, const float 
     return interrupt_signal() == 0 ? GNO_OK : gno_context_fail(context, GNO_ERROR_CANCELLED, "interrupted");
 }
 
+/* size: bytes, 0 when not known. */
+static int no_room(gno_context *context, const char *what, const gno_image_def *image, double size)
+{
+    char text[160], bytes[32] = "";
+    if (size > 0.0) {
+        snprintf(bytes, sizeof bytes, " (%.1f GB)", size * 1e-9);
+    }
+    snprintf(text, sizeof text, "out of memory for %s of %d x %d%s", what, image->width, image->height, bytes);
+    gno_context_fail(context, GNO_ERROR_MEMORY, text);
+    say("%s", gno_context_message(context));
+    return EXIT_FAILED;
+}
+
 static int run_scene(const job *work, gno_context *context, gno_scene *scene, progress *shown, double begun)
 {
     const gno_image_def image = gno_scene_image(scene);
@@ -268,16 +286,14 @@ static int run_scene(const job *work, gno_context *context, gno_scene *scene, pr
     /* Through the context, so that the picture is part of the peak memory told by --stats. */
     float *rgb = gno_context_realloc(context, NULL, 0, bytes);
     if (rgb == NULL) {
-        say("out of memory for a picture of %d x %d (%.1f GB)", image.width, image.height, (double)bytes * 1e-9);
-        return EXIT_FAILED;
+        return no_room(context, "a picture", &image, (double)bytes);
     }
     gno_render_def how = work->def;
     layer_buffers buffers;
     const int has_layers = work->layers.wanted != 0;
     if (has_layers && !layers_allocate(&work->layers, scene, &buffers)) {
-        say("out of memory for the layers of a picture of %d x %d", image.width, image.height);
         gno_context_realloc(context, rgb, bytes, 0);
-        return EXIT_FAILED;
+        return no_room(context, "the layers of a picture", &image, 0.0);
     }
     how.layers = has_layers ? &buffers.layers : NULL;
     const double rendered_from = seconds_now();
@@ -313,7 +329,8 @@ static int run_job(const job *work)
 {
     progress shown = progress_make(work->quiet);
     const double begun = seconds_now();
-    const gno_context_def def = progress_context_def(&shown);
+    gno_context_def def = progress_context_def(&shown);
+    def.max_memory = work->memory;
     gno_context *context = NULL;
     gno_scene *scene = NULL;
     if (gno_context_create(&def, &context) != GNO_OK) {

@@ -3,6 +3,7 @@
  * prepare (scene) -> shadow matrix by light (shadow) -> projection and bins (scan) -> tiles (engine/tile.h) -> picture.
  */
 #include "base/parallel.h"
+#include "engine/bands.h"
 #include "engine/job.h"
 #include "scene/validate.h"
 #include <string.h>
@@ -69,6 +70,7 @@ static gno_status check_def(gno_context *context, const gno_render_def *def)
 
 typedef struct tile_job {
     gnoi_frame_job *frame;
+    const gnoi_bands *bands;
     gnoi_tile **workers; /* made when a thread takes its first tile */
 } tile_job;
 
@@ -81,7 +83,7 @@ static gno_status render_tile(void *user, int worker, size_t piece)
         if (!job->workers[worker] || !gnoi_tile_init(job->workers[worker], job->frame))
             return GNO_ERROR_MEMORY;
     }
-    return gnoi_tile_render(job->workers[worker], piece) ? GNO_OK : GNO_ERROR_MEMORY;
+    return job->bands->make(job->bands->user, job->workers[worker], piece) ? GNO_OK : GNO_ERROR_MEMORY;
 }
 
 static void add_stats(gno_stats *stats, const gnoi_tile *tile)
@@ -94,17 +96,36 @@ static void add_stats(gno_stats *stats, const gnoi_tile *tile)
     stats->columns_full += tile->store.full;
 }
 
-static gno_status render_tiles(gnoi_frame_job *frame, int threads, gno_stats *stats)
+/* Band after band, each handed out before the next is begun. */
+static gno_status render_bands(tile_job *job, int threads)
+{
+    gnoi_frame_job *frame = job->frame;
+    const gnoi_bands *bands = job->bands;
+    size_t across = (size_t)frame->bins.tiles_x;
+    int rows = bands->hand_out ? gnoi_band_rows(frame->bins.tiles_x, threads) : frame->bins.tiles_y;
+    gno_status status = GNO_OK;
+    for (int y = 0; y < frame->bins.tiles_y && !status; y += rows) {
+        int count = frame->bins.tiles_y - y < rows ? frame->bins.tiles_y - y : rows;
+        frame->first_row = bands->hand_out ? y * GNOI_TILE_H : 0;
+        status = gnoi_parallel_part(frame->scene->context, threads, (size_t)y * across, (size_t)count * across,
+                                    across * (size_t)frame->bins.tiles_y, "render", render_tile, job);
+        if (!status && bands->hand_out)
+            status = bands->hand_out(bands->user, frame, y, count);
+    }
+    return status;
+}
+
+static gno_status render_tiles(gnoi_frame_job *frame, int threads, const gnoi_bands *bands, gno_stats *stats)
 {
     gno_context *context = frame->scene->context;
-    size_t tiles = (size_t)frame->bins.tiles_x * (size_t)frame->bins.tiles_y;
     gno_status status;
     tile_job job;
     job.frame = frame;
+    job.bands = bands;
     job.workers = gnoi_calloc(context, (size_t)threads, sizeof *job.workers);
     if (!job.workers)
         return GNO_ERROR_MEMORY;
-    status = gnoi_parallel(context, threads, tiles, "render", render_tile, &job);
+    status = render_bands(&job, threads);
     for (int i = 0; i < threads; i++)
         if (job.workers[i]) {
             add_stats(stats, job.workers[i]);
@@ -218,17 +239,17 @@ void gnoi_frame_job_free(gnoi_frame_job *frame)
     gnoi_bins_free(context, &frame->bins);
 }
 
-static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
+static gno_status render(gno_scene *scene, const gno_render_def *def, const gnoi_bands *bands, gno_stats *stats)
 {
     gnoi_frame_job frame;
     double start = gnoi_now(), t;
     gno_status status = gnoi_frame_job_make(scene, def, &frame, stats);
-    frame.rgb = rgb;
+    frame.rgb = bands->rgb;
     t = gnoi_now();
     if (!status && def->engine == GNO_ENGINE_WEILER_ATHERTON)
         status = gnoi_paint_visible(scene, &frame, stats);
     else if (!status)
-        status = render_tiles(&frame, gnoi_thread_count(def->threads), stats);
+        status = render_tiles(&frame, gnoi_thread_count(def->threads), bands, stats);
     stats->scan_seconds = lap(&t);
     stats->total_seconds = t - start;
     stats->polygons = (double)scene->prepared.poly_count;
@@ -239,23 +260,39 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, float *rgb
     return status;
 }
 
-gno_status gno_render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
+gno_status gnoi_render(gno_scene *scene, const gno_render_def *def, const gnoi_bands *bands, gno_stats *stats)
 {
     gno_render_def defaults = gno_render_def_default();
     gno_stats unused;
     gno_status status;
-    if (!scene)
-        return GNO_ERROR_ARGUMENT;
     def = def ? def : &defaults;
     stats = stats ? stats : &unused;
     memset(stats, 0, sizeof *stats);
-    if (!rgb)
-        return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_render: no picture buffer");
+    gnoi_begin(scene->context, "render");
     status = check_def(scene->context, def);
     if (status)
         return status;
-    status = render(scene, def, rgb, stats);
+    status = render(scene, def, bands, stats);
     if (status == GNO_ERROR_MEMORY)
         return gnoi_fail(scene->context, status, "out of memory for the picture");
     return status;
+}
+
+static int make_pixels(void *user, gnoi_tile *tile, size_t index)
+{
+    (void)user;
+    return gnoi_tile_render(tile, index);
+}
+
+gno_status gno_render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
+{
+    gnoi_bands whole;
+    if (!scene)
+        return GNO_ERROR_ARGUMENT;
+    if (!rgb)
+        return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_render: no picture buffer");
+    memset(&whole, 0, sizeof whole);
+    whole.make = make_pixels;
+    whole.rgb = rgb;
+    return gnoi_render(scene, def, &whole, stats);
 }

@@ -158,7 +158,7 @@ void gnoi_tile_write(const gnoi_tile *tile)
 {
     const gnoi_frame_job *job = tile->job;
     for (int y = 0; y < tile->height; y++) {
-        float *out = job->rgb + 3 * ((size_t)(tile->y0 + y) * (size_t)job->view.width + (size_t)tile->x0);
+        float *out = job->rgb + 3 * ((size_t)(tile->y0 + y - job->first_row) * (size_t)job->view.width + (size_t)tile->x0);
         for (int x = 0; x < tile->width; x++) {
             int i = (y + 1) * GNOI_TILE_W + x;
             for (int k = 0; k < 3; k++)
@@ -188,6 +188,22 @@ static void make_layers(gnoi_tile *tile, const uint32_t *items, size_t count)
     tile->fragments.alone = 0;
     if (!tile->failed)
         gnoi_tile_layers_write(tile);
+}
+
+int gnoi_tile_lay(gnoi_tile *tile, size_t index)
+{
+    const gnoi_frame_job *job = tile->job;
+    const uint32_t *items = job->bins.items + job->bins.start[index];
+    size_t count = job->bins.start[index + 1] - job->bins.start[index];
+    gnoi_tile_start(tile, index);
+    gnoi_tile_sort(tile, items, count);
+    if (tile->failed)
+        return 0;
+    add_base_lines(tile);
+    gnoi_tile_draw(tile, items, count);
+    if (!tile->failed)
+        gnoi_tile_light(tile);
+    return !tile->failed && !tile->lines.failed;
 }
 
 int gnoi_tile_render(gnoi_tile *tile, size_t index)

@@ -43,6 +43,7 @@ typedef struct gnoi_frame_job {
     int lamp_count;
     int textured; /* some material is */
     float *rgb;
+    int first_row; /* of the picture, that rgb begins with */
     const gno_layers *layers; /* NULL: none */
     uint32_t *lamp_light; /* with layers: the scene's light that a lamp is of */
 } gnoi_frame_job;
@@ -119,7 +120,8 @@ typedef struct gnoi_open {
 typedef struct gnoi_tile {
     const gnoi_frame_job *job;
     int x0, y0, width, height; /* pixels */
-    int failed;                /* sticky: memory ran out */
+    int failed;                /* sticky: memory ran out, or the call is to stop */
+    size_t steps;              /* a count of lines split, for asking now and then whether to stop */
     gnoi_lines lines;
     uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
     uint32_t row_mask[GNOI_TILE_ROWS];     /* bit x: some line of the row passes pixel x */
@@ -185,6 +187,18 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index);
 /* tile.c: empties the tile for number `index`; its sums of colours over the weights to job->rgb. */
 void gnoi_tile_start(gnoi_tile *tile, size_t index);
 void gnoi_tile_write(const gnoi_tile *tile);
+
+/* The tile's polygons on its base lines, their columns found, nothing shaded: for who wants spans instead of pixels. Returns 0 when
+ * memory fails. */
+int gnoi_tile_lay(gnoi_tile *tile, size_t index);
+
+/* tile_rows.c: finds where the column's shadow polygons meet pieces that lie between xa and xb of a sample line: in
+ * store.intervals, with room for their parts in tile->parts. Returns 0 when memory fails. */
+int gnoi_tile_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb);
+
+/* Lit parts shorter than this, in pixels, are where rounding parts a receiver's end from its caster's edge: not light but
+ * a leak. Spans end on multiples of half of it. */
+#define GNOI_LEAK_LENGTH (2.0f / GNOI_X_ONE)
 
 /* tile_scan.c: prepares the order of the bin's polygons; draws them into the lines. */
 void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count);

@@ -127,7 +127,8 @@ void gnoi_tile_light(gnoi_tile *tile)
         for (size_t i = 0; i < count && !tile->failed; i++) {
             gnoi_slot *slot = &tile->slots[ordered[i]];
             tile->failed |= !gnoi_columns_ask(job->scene, &job->view, &job->lamps[j], &job->casters[j], &slot->receiver, &tile->store,
-                                              &tile->columns[slot->first_column + (uint32_t)j]);
+                                              &tile->columns[slot->first_column + (uint32_t)j]) ||
+                            (i % 32 == 31 && gnoi_stopped(tile->lines.context));
         }
         tile->failed |= !gnoi_columns_finish(&job->view, &job->casters[j], &tile->store);
     }

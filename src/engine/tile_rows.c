@@ -7,10 +7,6 @@
 #include "engine/tile.h"
 #include <string.h>
 
-/* Lit parts shorter than this, in pixels, are where rounding parts a receiver's end from its caster's edge: not light but
- * a leak. Spans end on multiples of half of it. */
-#define LEAK_LENGTH (2.0f / GNOI_X_ONE)
-
 static void cells_clear(gnoi_cells *cells, int first, int last)
 {
     size_t size = (size_t)(last - first + 1) * sizeof(float);
@@ -103,14 +99,13 @@ static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, floa
     for (size_t i = 0; i < n; i++) {
         const gno_span_part *part = &tile->parts[i];
         float a = (float)(part->x0 - tile->x0), b = (float)(part->x1 - tile->x0);
-        if (b - a < LEAK_LENGTH || (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0)))
+        if (b - a < GNOI_LEAK_LENGTH || (!(part->light[0] > 0) && !(part->light[1] > 0) && !(part->light[2] > 0)))
             continue;
         add_lit(tile, lamp, piece, a, b, part->light, dy, line);
     }
 }
 
-/* Finds where the column's shadow polygons meet pieces that lie between xa and xb of a sample line. */
-static int find_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb)
+int gnoi_tile_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb)
 {
     const gnoi_frame_job *job = tile->job;
     return gnoi_column_intervals(job->scene, &job->view, &job->lamps[lamp], &job->casters[lamp], &slot->receiver, column, y,
@@ -133,7 +128,7 @@ static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, gn
             xa = pieces[end].x0 < xa ? pieces[end].x0 : xa;
             xb = pieces[end].x1 > xb ? pieces[end].x1 : xb;
         }
-        if (!find_intervals(tile, slot, column, lamp, y, xa, xb)) {
+        if (!gnoi_tile_intervals(tile, slot, column, lamp, y, xa, xb) || gnoi_stopped_at(tile->lines.context, tile->steps++)) {
             tile->failed = 1;
             return;
         }
@@ -314,6 +309,7 @@ void gnoi_tile_row(gnoi_tile *tile, int row)
         gnoi_slot *slot = &tile->slots[tile->touched[i]];
         if (!tile->failed)
             row_of_slot(tile, row, slot);
+        tile->failed |= i % 64 == 63 && gnoi_stopped(tile->lines.context);
         slot->chain = 0;
     }
     add_background(tile, row);

@@ -434,6 +434,7 @@ void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count)
             if (i % COVER_STEP == 0 && is_covered(tile, z + ORDER_SLACK * fabsf(z)))
                 break;
             draw_item(tile, &tile->items[item], items[item]);
+            tile->failed |= i % 64 == 63 && gnoi_stopped(tile->lines.context);
         }
         i = end;
         tile->failed |= tile->lines.failed;

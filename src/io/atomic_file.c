@@ -193,6 +193,14 @@ int gnoi_file_write(gnoi_file *file, const void *data, size_t size)
     return file->error == 0;
 }
 
+int gnoi_file_go_on(gnoi_file *file, double fraction)
+{
+    if (file->error == 0 && gno_context_progress(file->context, "write", fraction) != GNO_OK) {
+        file->error = ECANCELED;
+    }
+    return file->error == 0;
+}
+
 int gnoi_file_write_at(gnoi_file *file, const void *data, size_t size, uint64_t offset)
 {
     const char *bytes = data;
@@ -210,13 +218,17 @@ int gnoi_file_write_at(gnoi_file *file, const void *data, size_t size, uint64_t 
 }
 
 /* Copies the gathered bytes to the stream they are for. */
-static int drain(int from, int to)
+static int drain(gnoi_file *file)
 {
+    const int from = file->descriptor, to = file->drain;
     char block[65536];
     if (lseek(from, 0, SEEK_SET) != 0) {
         return errno;
     }
     for (;;) {
+        if (!gnoi_file_go_on(file, 1)) {
+            return file->error;
+        }
         const ssize_t size = read(from, block, sizeof block);
         if (size == 0) {
             return 0;
@@ -240,7 +252,7 @@ static int close_own(int descriptor)
 gno_status gnoi_file_commit(gnoi_file *file)
 {
     if (file->error == 0 && file->drain >= 0) {
-        file->error = drain(file->descriptor, file->drain);
+        file->error = drain(file);
     }
     /* The name must not reach the disk before the bytes do, or a power cut leaves an empty file under it. Some file systems
      * have no fsync; that is no reason to fail. */
@@ -260,6 +272,9 @@ gno_status gnoi_file_commit(gnoi_file *file)
         unlink(file->temporary);
     }
     release(file);
+    if (file->error == ECANCELED) {
+        return gno_context_fail(file->context, GNO_ERROR_CANCELLED, "write: cancelled");
+    }
     return file->error == 0 ? GNO_OK : fail(file->context, file->path, "writing failed", file->error);
 }
 

@@ -31,10 +31,15 @@ gno_status gnoi_file_open(gno_context *context, const char *path, int seekable, 
 /* Appends; returns 0 after an error. */
 int gnoi_file_write(gnoi_file *file, const void *data, size_t size);
 
+/* Says how much of the file is made, and asks whether to go on: for encoders, at every row or block. Returns 0 after an error and
+ * when the progress callback says stop; gnoi_file_commit then removes the file and returns CANCELLED. */
+int gnoi_file_go_on(gnoi_file *file, double fraction);
+
 /* Writes at an offset from the start; only for a file opened as seekable. */
 int gnoi_file_write_at(gnoi_file *file, const void *data, size_t size, uint64_t offset);
 
-/* Makes the file appear under its name, or removes it when anything failed. Either way the file is closed. Errors: FILE. */
+/* Makes the file appear under its name, or removes it when anything failed. Either way the file is closed. Errors: FILE,
+ * CANCELLED. */
 gno_status gnoi_file_commit(gnoi_file *file);
 
 /* Closes and removes what was written; accepts a file that is already closed. */

@@ -7,6 +7,7 @@
 #include <stdarg.h>
 #include <stdint.h>
 #include <string.h>
+#include <sys/stat.h>
 
 enum { message_size = 1024, first_block = 256 * 1024, first_elements = 16 };
 
@@ -80,6 +81,8 @@ gno_status gnoi_blocks_open(gnoi_blocks *blocks, gno_context *context, const cha
     blocks->capacity = first_block;
     blocks->file = fopen(path, "rb");
     if (!blocks->file) return gnoi_mesh_fail(context, GNO_ERROR_FILE, path, 0, "cannot open: %s", strerror(errno));
+    struct stat found;
+    if (fstat(fileno(blocks->file), &found) == 0 && S_ISREG(found.st_mode)) blocks->size = (double)found.st_size;
     return GNO_OK;
 }
 
@@ -135,6 +138,8 @@ static void hand_out_rest(gnoi_blocks *blocks, const char **first, const char **
 gno_status gnoi_blocks_next(gnoi_blocks *blocks, const char **first, const char **last)
 {
     *first = *last = NULL;
+    double fraction = blocks->taken < blocks->size ? blocks->taken / blocks->size : 0;
+    if (gno_context_progress(blocks->context, "load", fraction) != GNO_OK) return GNO_ERROR_CANCELLED;
     if (blocks->ended) return GNO_OK;
     memmove(blocks->data, blocks->data + blocks->start, blocks->end - blocks->start);
     blocks->end -= blocks->start;
@@ -143,6 +148,7 @@ gno_status gnoi_blocks_next(gnoi_blocks *blocks, const char **first, const char 
         size_t room = blocks->capacity - 2 - blocks->end;
         size_t got = fread(blocks->data + blocks->end, 1, room, blocks->file);
         blocks->end += got;
+        blocks->taken += (double)got;
         if (ferror(blocks->file))
             return gnoi_mesh_fail(blocks->context, GNO_ERROR_FILE, blocks->path, 0, "cannot read: %s", strerror(errno));
         skip_byte_order_mark(blocks);

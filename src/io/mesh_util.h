@@ -44,6 +44,7 @@ typedef struct gnoi_blocks {
     char *data;
     size_t capacity, start, end; /* bytes [start,end) of data are read but not handed out */
     int ended, begun;
+    double size, taken; /* bytes of the file (0: not known), and read so far */
 } gnoi_blocks;
 
 gno_status gnoi_blocks_open(gnoi_blocks *blocks, gno_context *context, const char *path);

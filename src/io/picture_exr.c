@@ -171,7 +171,7 @@ static exr_result_t write_blocks(encoder *e, int rows)
 {
     exr_result_t result = EXR_ERR_SUCCESS;
     const int height = e->picture->height;
-    for (int y = 0; y < height && result == EXR_ERR_SUCCESS; y += rows) {
+    for (int y = 0; y < height && result == EXR_ERR_SUCCESS && gnoi_file_go_on(e->file, (double)y / height); y += rows) {
         exr_chunk_info_t chunk;
         result = exr_write_scanline_chunk_info(e->exr, e->part, y, &chunk);
         if (result == EXR_ERR_SUCCESS) {

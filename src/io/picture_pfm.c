@@ -19,7 +19,7 @@ gno_status gnoi_picture_pfm(const gnoi_picture *picture, gnoi_file *file)
         return gno_context_fail(file->context, GNO_ERROR_MEMORY, "out of memory for a picture row");
     }
     gnoi_file_write(file, head, (size_t)length);
-    for (int y = picture->height - 1; y >= 0 && file->error == 0; y--) {
+    for (int y = picture->height - 1; y >= 0 && gnoi_file_go_on(file, 1 - (y + 1.0) / picture->height); y--) {
         const float *source = gnoi_picture_row(picture, y);
         for (size_t i = 0; i < values; i++) {
             row[i] = (float)(source[i] * picture->exposure);

@@ -110,6 +110,9 @@ static int encode(encoder *e)
     png_set_compression_buffer_size(e->png, 65536);
     png_write_info(e->png, e->info);
     for (int y = 0; y < e->picture->height; y++) {
+        if (!gnoi_file_go_on(e->file, (double)y / e->picture->height)) {
+            return 0;
+        }
         encode_row(e, gnoi_picture_row(e->picture, y));
         png_write_row(e->png, e->row);
     }

@@ -157,8 +157,8 @@ static reach reach_start(double t)
 }
 
 /* All corners of all polygons, seen along the frame's axes. */
-static void reach_mesh(const gno_scene *scene, const frame *f, const double view[3], const double side[3], const double top[3],
-                       reach *wide, reach *high)
+static gno_status reach_mesh(const gno_scene *scene, const frame *f, const double view[3], const double side[3], const double top[3],
+                             reach *wide, reach *high)
 {
     size_t count = gno_scene_count(scene).polygons;
     gno_polygon p;
@@ -170,10 +170,14 @@ static void reach_mesh(const gno_scene *scene, const frame *f, const double view
             reach_out(wide, dot(corner, side), q);
             reach_out(high, dot(corner, top), q);
         }
+        if (i % 4096 == 4095 && gno_context_progress(gno_scene_context(scene), "frame the mesh", (double)i / (double)count) != GNO_OK) {
+            return GNO_ERROR_CANCELLED;
+        }
     }
+    return GNO_OK;
 }
 
-static void place_camera(const gno_scene *scene, const frame *f, const gno_image_def *image, gno_camera *camera)
+static gno_status place_camera(const gno_scene *scene, const frame *f, const gno_image_def *image, gno_camera *camera)
 {
     const double radians = 3.14159265358979323846 / 180;
     double a = AZIMUTH * radians, e = ELEVATION * radians, t = tan(FIELD * radians / 2) * (1 - MARGIN);
@@ -182,7 +186,7 @@ static void place_camera(const gno_scene *scene, const frame *f, const gno_image
     combine(side, cos(a), f->right, 0, f->up, -sin(a), f->front);
     combine(top, -sin(a) * sin(e), f->right, cos(e), f->up, -cos(a) * sin(e), f->front);
     reach wide = reach_start(t * image->width / image->height), high = reach_start(t);
-    reach_mesh(scene, f, view, side, top, &wide, &high);
+    gno_status status = reach_mesh(scene, f, view, side, top, &wide, &high);
     double across = (wide.most - wide.least) / 2, above = (high.most - high.least) / 2;
     double along = fmax(fmax((wide.most + wide.least) / (2 * wide.t), (high.most + high.least) / (2 * t)), 1e-3 * f->size);
     *camera = gno_camera_default();
@@ -193,6 +197,7 @@ static void place_camera(const gno_scene *scene, const frame *f, const gno_image
         camera->eye[i] = camera->target[i] + along * view[i];
         camera->up[i] = f->up[i];
     }
+    return status;
 }
 
 static gno_status add_lights(gno_scene *scene, const frame *f, const gno_camera *camera)
@@ -257,8 +262,8 @@ static gno_status set_view(gno_scene *scene, const gnoi_yaml *yaml, const gnoi_y
     if (status == GNO_OK && seen[AMBIENT]) status = gnoi_read_ambient(yaml, seen[AMBIENT], ambient);
     if (status != GNO_OK) return status;
     gno_camera camera = gno_scene_camera(scene);
-    if (!has_camera) place_camera(scene, f, &image, &camera);
-    if (seen[CAMERA]) status = gnoi_read_camera(yaml, seen[CAMERA], &camera);
+    if (!has_camera) status = place_camera(scene, f, &image, &camera);
+    if (status == GNO_OK && seen[CAMERA]) status = gnoi_read_camera(yaml, seen[CAMERA], &camera);
     if (status == GNO_OK) status = gno_scene_set_camera(scene, &camera);
     if (status == GNO_OK) status = gno_scene_set_image(scene, &image);
     if (status == GNO_OK) status = gno_scene_set_ambient(scene, ambient);

@@ -18,6 +18,8 @@ enum {
     CORNER_VERTEX, CORNER_NORMAL, CORNER_TEXCOORD, OBJECTS, ARRAY_COUNT
 };
 
+#define MANY_CORNERS 200000
+
 typedef struct adding {
     gno_scene *scene;
     gno_context *context;
@@ -541,17 +543,32 @@ static gno_status check_mesh(const adding *a)
     return status == GNO_OK ? check_options(a) : status;
 }
 
+/* Between the steps of copying a mesh that is large enough to take some milliseconds. */
+static gno_status go_on(const adding *a, int step)
+{
+    return a->mesh->corner_count < MANY_CORNERS ? GNO_OK : gnoi_progress(a->context, "copy mesh", step / 4.0);
+}
+
 static gno_status copy_mesh(const adding *a)
 {
     gno_status status = copy_polygons(a);
+    if (status == GNO_OK) {
+        status = go_on(a, 1);
+    }
     if (status == GNO_OK && a->mesh->vertex_count > 0) { /* arrays of no elements may be NULL */
         status = copy_positions(a);
+    }
+    if (status == GNO_OK) {
+        status = go_on(a, 2);
     }
     if (status == GNO_OK && a->normal_count > 0) {
         copy_normals(a);
     }
     if (status == GNO_OK && a->texcoord_count > 0) {
         status = copy_texcoords(a);
+    }
+    if (status == GNO_OK) {
+        status = go_on(a, 3);
     }
     if (status == GNO_OK) {
         status = copy_corners(a);

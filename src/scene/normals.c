@@ -111,6 +111,9 @@ static int store_file_normals(smoothing *s)
     out->normal_count = out->normal_capacity = count;
     for (i = 0; i < count; i++) {
         vec3 n = unit_of(s->scene->normals[i]);
+        if (gnoi_stopped_at(s->scene->context, i)) {
+            return 0;
+        }
         out->normals[i][0] = (float)n.x;
         out->normals[i][1] = (float)n.y;
         out->normals[i][2] = (float)n.z;
@@ -143,7 +146,8 @@ static int clear_unused(const smoothing *s)
     return used;
 }
 
-/* Corners whose file normal is zero take their plane's. Returns whether corners are left to average, -1 without memory. */
+/* Corners whose file normal is zero take their plane's. Returns whether corners are left to average, -1 without memory or when
+ * stopped. */
 static int settle_file_normals(smoothing *s, size_t first, size_t last)
 {
     const gnoi_prepared *out = s->out;
@@ -158,6 +162,9 @@ static int settle_file_normals(smoothing *s, size_t first, size_t last)
             } else if (is_zero(out->normals[normal[k]]) && !store_plane(s, i, &normal[k])) {
                 return -1;
             }
+        }
+        if (gnoi_stopped_at(s->scene->context, i)) {
+            return -1;
         }
     }
     return open;
@@ -250,14 +257,19 @@ static void add_polygon(const smoothing *s, size_t i, add_fn add, void *user)
     }
 }
 
-static void add_smooth(const smoothing *s, add_fn add, void *user)
+/* 0 when stopped. */
+static int add_smooth(const smoothing *s, add_fn add, void *user)
 {
     size_t i;
     for (i = s->first; i < s->last; i++) {
         if (gnoi_is_smooth(&s->out->polys[i])) {
             add_polygon(s, i, add, user);
         }
+        if (gnoi_stopped_at(s->scene->context, i)) {
+            return 0;
+        }
     }
+    return 1;
 }
 
 static void add_term(sum *total, const gnoi_poly *poly, double weight)
@@ -293,7 +305,7 @@ static int settle_points(smoothing *s, const sum *sums)
         return 0;
     }
     for (class = 0; class < s->points.count; class++) {
-        if (!store(s, v3_unit(sums[class].n), &unused)) {
+        if (!store(s, v3_unit(sums[class].n), &unused) || gnoi_stopped_at(s->scene->context, class)) {
             return 0;
         }
     }
@@ -309,6 +321,9 @@ static int settle_points(smoothing *s, const sum *sums)
                 }
             }
         }
+        if (gnoi_stopped_at(s->scene->context, i)) {
+            return 0;
+        }
     }
     return 1;
 }
@@ -323,8 +338,7 @@ static int average_all(smoothing *s)
     if (!t.sums) {
         return 0;
     }
-    add_smooth(s, add_to_sum, &t);
-    good = settle_points(s, t.sums);
+    good = add_smooth(s, add_to_sum, &t) && settle_points(s, t.sums);
     gnoi_free(context, t.sums, s->points.count, sizeof *t.sums);
     return good;
 }
@@ -375,7 +389,9 @@ static int make_listing(smoothing *s, listing *l, size_t *entry_count)
     if (!l->start) {
         return 0;
     }
-    add_smooth(s, count_entry, l);
+    if (!add_smooth(s, count_entry, l)) {
+        return 0;
+    }
     for (i = 0; i < count; i++) {
         l->start[i + 1] += l->start[i];
     }
@@ -384,7 +400,9 @@ static int make_listing(smoothing *s, listing *l, size_t *entry_count)
     if (!l->entries) {
         return 0;
     }
-    add_smooth(s, list_entry, l);
+    if (!add_smooth(s, list_entry, l)) {
+        return 0;
+    }
     memmove(l->start + 1, l->start, count * sizeof *l->start);
     l->start[0] = 0;
     return 1;
@@ -540,6 +558,7 @@ static int average_sides(smoothing *s)
         int crowd = count > MOST_PAIRED && !is_one_side(s, l.entries + from, count, half_cosine);
         good = crowd ? settle_crowd(s, l.entries + from, count, cosine)
                      : settle_point(s, l.entries + from, count, cosine, half_cosine);
+        good = good && !gnoi_stopped_at(context, class);
     }
     gnoi_free(context, l.entries, entry_count, sizeof *l.entries);
     gnoi_free(context, l.start, (size_t)s->points.count + 1, sizeof *l.start);

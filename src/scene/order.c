@@ -33,7 +33,8 @@ static uint32_t place_of(const gnoi_prepared *prep, const double p[3])
     return key;
 }
 
-static void sort_polys(const gno_scene *scene, gnoi_keyed *keys, gnoi_keyed *scratch)
+/* 0 when stopped. */
+static int sort_polys(const gno_scene *scene, gnoi_keyed *keys, gnoi_keyed *scratch)
 {
     const gnoi_prepared *prep = &scene->prepared;
     for (size_t i = 0; i < prep->poly_count; i++) {
@@ -41,9 +42,12 @@ static void sort_polys(const gno_scene *scene, gnoi_keyed *keys, gnoi_keyed *scr
         keys[i].value = (uint32_t)i;
         if (prep->poly_count >= FEW_POLYGONS)
             keys[i].key = place_of(prep, scene->positions[prep->corner_vertex[prep->polys[i].corner]]);
+        if (gnoi_stopped_at(scene->context, i))
+            return 0;
     }
     if (prep->poly_count >= FEW_POLYGONS)
         gnoi_sort(keys, scratch, prep->poly_count);
+    return !gnoi_stopped(scene->context);
 }
 
 /* Numbers given in the order of first use. */
@@ -182,14 +186,15 @@ gno_status gnoi_order_polygons(gno_scene *scene)
     memset(&o, 0, sizeof o);
     o.scene = scene;
     o.from = prep;
-    good = keys && reserve(&o);
+    good = keys && reserve(&o) && sort_polys(scene, keys, keys + count);
     if (good) {
-        sort_polys(scene, keys, keys + count);
         memset(o.vertices.of, 0xff, scene->vertex_count * sizeof *o.vertices.of); /* GNOI_NONE */
         memset(o.table, 0xff, ((size_t)o.table_mask + 1) * sizeof *o.table);
         memset(o.normals.of, 0xff, normal_count * sizeof *o.normals.of);
-        for (size_t i = 0; i < count; i++)
+        for (size_t i = 0; i < count && good; i++) {
             copy_poly(&o, &prep->polys[keys[i].value], i);
+            good = !gnoi_stopped_at(context, i);
+        }
         o.to.ring_corner[o.to.ring_count] = (uint32_t)o.to.corner_count;
         o.to.vertex_count = o.vertices.count;
         o.to.normal_count = o.normals.count;

@@ -271,6 +271,9 @@ static gno_status emit_all(gno_scene *scene, const unsigned char *kinds, int smo
         } else if (kinds[p] == GNOI_SPLIT) {
             status = emit_split(&e, poly);
         }
+        if (gnoi_stopped_at(scene->context, p)) {
+            status = GNO_ERROR_CANCELLED;
+        }
     }
     out->ring_corner[out->ring_count] = (uint32_t)out->corner_count;
     free_scratch(&e);
@@ -293,6 +296,9 @@ static gno_status triangulate_chunk(void *user, int worker, size_t piece)
         if (poly->triangle != GNOI_NONE) {
             status = gnoi_triangulate(scene->context, positions, out->corner_vertex, out->ring_corner + poly->ring,
                                       poly->ring_count, poly->n, out->triangles + poly->triangle);
+        }
+        if (gnoi_stopped_at(scene->context, i)) {
+            status = GNO_ERROR_CANCELLED;
         }
     }
     return status;
@@ -394,6 +400,7 @@ gno_status gno_scene_prepare(gno_scene *scene, int threads, gno_scene_problems *
         return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_scene_prepare: %d threads is not in [0, %d]", threads,
                          GNO_MAX_THREADS);
     }
+    gnoi_begin(scene->context, "prepare");
     status = gnoi_scene_prepare(scene, threads);
     if (problems && status == GNO_OK) {
         *problems = scene->prepared.problems;

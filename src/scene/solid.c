@@ -56,8 +56,9 @@ static void join(uint32_t *parent, uint32_t v, uint32_t w)
         parent[v] = w;
 }
 
-/* Joins the vertices of every prepared polygon, then numbers the parts; prepared.vertex_solid serves as the forest. */
-static void find_parts(gnoi_prepared *prep)
+/* Joins the vertices of every prepared polygon, then numbers the parts; prepared.vertex_solid serves as the forest. Like the
+ * passes below, 0 when stopped. */
+static int find_parts(gno_context *context, gnoi_prepared *prep)
 {
     uint32_t *parent = prep->vertex_solid, count = 0;
     for (uint32_t v = 0; v < prep->vertex_count; v++)
@@ -67,6 +68,8 @@ static void find_parts(gnoi_prepared *prep)
         for (uint32_t k = 1; k < prep->polys[i].corner_count; k++)
             if (parent[corner[k]] != parent[corner[0]])
                 join(parent, corner[k], corner[0]);
+        if (gnoi_stopped_at(context, i))
+            return 0;
     }
     for (uint32_t v = 0; v < prep->vertex_count; v++)
         parent[v] = root_of(parent, v);
@@ -74,10 +77,11 @@ static void find_parts(gnoi_prepared *prep)
     for (uint32_t v = 0; v < prep->vertex_count; v++)
         parent[v] = parent[v] == v ? count++ : parent[parent[v]];
     prep->solid_count = count;
+    return !gnoi_stopped(context);
 }
 
 /* Edges of the source polygons, also of those without area, which close seams. */
-static void add_source_edges(const gno_scene *scene, const uint32_t *vertex_number, balance *balances)
+static int add_source_edges(const gno_scene *scene, const uint32_t *vertex_number, balance *balances)
 {
     const uint32_t *vertex_solid = scene->prepared.vertex_solid;
     for (size_t p = 0; p < scene->polygon_count; p++) {
@@ -90,7 +94,10 @@ static void add_source_edges(const gno_scene *scene, const uint32_t *vertex_numb
             if (w != GNOI_NONE)
                 add_edge(&balances[vertex_solid[v]], v, w);
         }
+        if (gnoi_stopped_at(scene->context, p))
+            return 0;
     }
+    return 1;
 }
 
 static void grow_bounds(gnoi_solid *s, const double p[3])
@@ -102,7 +109,7 @@ static void grow_bounds(gnoi_solid *s, const double p[3])
 }
 
 /* Bounds, signed volume (of pyramids over the polygons' planes) and opacity. */
-static void add_prepared(const gno_scene *scene, balance *balances)
+static int add_prepared(const gno_scene *scene, balance *balances)
 {
     const gnoi_prepared *prep = &scene->prepared;
     for (size_t i = 0; i < prep->poly_count; i++) {
@@ -119,7 +126,10 @@ static void add_prepared(const gno_scene *scene, balance *balances)
             before = q;
         }
         balances[solid].volume += v3_dot(sum, v3_sub(first, v3_from(prep->lower)));
+        if (gnoi_stopped_at(scene->context, i))
+            return 0;
     }
+    return 1;
 }
 
 /* Only parts that are not closed as they are. */
@@ -146,7 +156,8 @@ gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number)
     prep->vertex_solid = gnoi_malloc(context, prep->vertex_capacity, sizeof *prep->vertex_solid);
     if (!prep->vertex_solid)
         return GNO_ERROR_MEMORY;
-    find_parts(prep);
+    if (!find_parts(context, prep))
+        return GNO_ERROR_MEMORY;
     balances = gnoi_calloc(context, prep->solid_count, sizeof *balances);
     prep->solids = gnoi_calloc(context, prep->solid_count, sizeof *prep->solids);
     if (balances && prep->solids) {
@@ -155,14 +166,14 @@ gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number)
                 prep->solids[i].lower[k] = HUGE_VAL;
                 prep->solids[i].upper[k] = -HUGE_VAL;
             }
-        add_source_edges(scene, vertex_number, balances);
-        add_prepared(scene, balances);
+        int good = add_source_edges(scene, vertex_number, balances) && add_prepared(scene, balances);
         for (size_t i = 0; i < prep->solid_count; i++) {
             prep->solids[i].closed = !balances[i].open && balances[i].sum[0] == 0 && balances[i].sum[1] == 0;
             prep->solids[i].cap = GNOI_NONE;
             prep->solids[i].outwards = balances[i].volume > 0;
         }
-        status = cap_open(scene, balances);
+        if (good)
+            status = cap_open(scene, balances);
     }
     gnoi_free(context, balances, prep->solid_count, sizeof *balances);
     return status;
@@ -215,6 +226,8 @@ int gnoi_solid_outside(const gno_scene *scene, size_t solid, vec3 point)
         if (c == 2)
             return 0;
         sum += c;
+        if (gnoi_stopped_at(scene->context, i))
+            return 0;
     }
     return sum == 0;
 }

@@ -16,6 +16,8 @@
 #define LOCAL_NODES 32 /* polygons of up to this many nodes need no memory from the context */
 #define RESCANS 8      /* times that a ring without ears is searched anew before nodes are clipped regardless */
 
+#define MOST_WORK 65536
+
 typedef struct node {
     double u, v;
     uint32_t corner;
@@ -25,6 +27,9 @@ typedef struct node {
 } node;
 
 typedef struct clipper {
+    gno_context *context;
+    size_t work;  /* nodes looked at since the last question whether to stop */
+    int stopped;
     const double (*positions)[3];
     const uint32_t *corner_vertex;
     double origin[2];
@@ -199,6 +204,16 @@ static int compare_holes(const void *a, const void *b)
     return p->left < q->left ? -1 : 1;
 }
 
+/* Counts work; a stop ends the loops over nodes, and the triangles are then not all written. */
+static void count_work(clipper *c, size_t nodes)
+{
+    c->work += nodes;
+    if (c->work >= MOST_WORK) {
+        c->work = 0;
+        c->stopped |= gnoi_stopped(c->context);
+    }
+}
+
 /* From the left to the right, so that the ray to the left meets the ring or a hole that is part of it already. */
 static void join_holes(clipper *c, const uint32_t *ring_corner, uint32_t ring_count, uint32_t outer, hole *holes)
 {
@@ -210,7 +225,8 @@ static void join_holes(clipper *c, const uint32_t *ring_corner, uint32_t ring_co
         h->v = c->nodes[h->left].v;
     }
     qsort(holes, ring_count - 1, sizeof *holes, compare_holes);
-    for (r = 0; r + 1 < ring_count; r++) {
+    for (r = 0; r + 1 < ring_count && !c->stopped; r++) {
+        count_work(c, c->node_count);
         join(c, find_bridge(c, outer, &c->nodes[holes[r].left]), holes[r].left);
     }
 }
@@ -253,7 +269,8 @@ static void judge(clipper *c, uint32_t i)
     node *n = &c->nodes[i];
     int reflex = !(area(&c->nodes[n->previous], n, &c->nodes[n->next]) > 0);
     set_reflex(c, i, reflex);
-    n->ear = !reflex && is_ear(c, n);
+    count_work(c, c->reflex_count);
+    n->ear = !reflex && !c->stopped && is_ear(c, n);
 }
 
 static void emit(clipper *c, uint32_t i)
@@ -316,7 +333,7 @@ static void clip_all(clipper *c, uint32_t start)
     uint32_t left = c->node_count, i = start, looked = 0;
     int rescans = RESCANS;
     judge_all(c, start);
-    while (left > 3) {
+    while (left > 3 && !c->stopped) {
         if (c->nodes[i].ear) {
             i = c->nodes[clip(c, i)].next; /* past the neighbour, so that slivers do not gather at one node */
             left--;
@@ -328,6 +345,7 @@ static void clip_all(clipper *c, uint32_t start)
             looked = 0;
         } else {
             rescans = 0;
+            count_work(c, left);
             i = clip(c, least_harm(c, i));
             left--;
             looked = 0;
@@ -400,6 +418,9 @@ gno_status gnoi_triangulate(gno_context *context, const double (*positions)[3], 
     hole *holes = local_holes;
     gno_status status = GNO_OK;
     clipper c;
+    c.context = context;
+    c.work = 0;
+    c.stopped = 0;
     c.positions = positions;
     c.corner_vertex = corner_vertex;
     c.nodes = local ? local_nodes : gnoi_malloc(context, count, sizeof *c.nodes);
@@ -421,6 +442,7 @@ gno_status gnoi_triangulate(gno_context *context, const double (*positions)[3], 
             outer = make_ring(&c, first, ring_corner[1], 1);
             join_holes(&c, ring_corner, ring_count, outer, holes);
             clip_all(&c, outer);
+            status = c.stopped ? GNO_ERROR_CANCELLED : GNO_OK;
         }
     }
     if (!local) {

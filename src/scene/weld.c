@@ -59,8 +59,8 @@ static void set_range(const gnoi_prepared *prepared, size_t first, size_t last, 
     w->span = (size_t)(high - low) + 1;
 }
 
-/* First the places of open corners get classes, then the other corners there find them. */
-static void set_classes(const gno_scene *scene, size_t first, size_t last, int make, gnoi_weld *w)
+/* First the places of open corners get classes, then the other corners there find them. 0 when stopped. */
+static int set_classes(const gno_scene *scene, size_t first, size_t last, int make, gnoi_weld *w)
 {
     const double(*positions)[3] = (const double(*)[3])scene->positions;
     const gnoi_prepared *prepared = &scene->prepared;
@@ -73,7 +73,11 @@ static void set_classes(const gno_scene *scene, size_t first, size_t last, int m
                 w->class_of[v - w->low] = find_class(w, positions, v, make);
             }
         }
+        if (gnoi_stopped_at(scene->context, i)) {
+            return 0;
+        }
     }
+    return 1;
 }
 
 static size_t count_open(const gnoi_prepared *prepared, size_t first, size_t last)
@@ -105,9 +109,7 @@ int gnoi_weld_make(const gno_scene *scene, size_t first, size_t last, gnoi_weld 
     }
     memset(weld->class_of, 0xff, weld->span * sizeof *weld->class_of); /* GNOI_NONE everywhere */
     memset(weld->table, 0xff, weld->table_size * sizeof *weld->table);
-    set_classes(scene, first, last, 1, weld);
-    set_classes(scene, first, last, 0, weld);
-    return 1;
+    return set_classes(scene, first, last, 1, weld) && set_classes(scene, first, last, 0, weld);
 }
 
 void gnoi_weld_free(gno_context *context, gnoi_weld *weld)

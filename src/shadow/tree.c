@@ -92,6 +92,8 @@ static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const un
             b->box[b->count] = box[k];
             b->number[b->count++] = (uint32_t)i;
         }
+        if (gnoi_stopped_at(scene->context, i))
+            return 0;
     }
     return 1;
 }
@@ -136,7 +138,8 @@ static uint32_t quantise(float x, float lo, float scale)
     return (uint32_t)(q < 0 ? 0 : q > top ? top : q);
 }
 
-static void order_boxes(const gnoi_boxes *b, gnoi_keyed *keys)
+/* 0 when stopped. */
+static int order_boxes(const gnoi_boxes *b, gnoi_keyed *keys)
 {
     float lo[SIZE_CLASSES][2], hi[SIZE_CLASSES][2], scale[SIZE_CLASSES][2];
     float whole_lo[2] = {FLT_MAX, FLT_MAX}, whole_hi[2] = {-FLT_MAX, -FLT_MAX}, whole;
@@ -174,7 +177,10 @@ static void order_boxes(const gnoi_boxes *b, gnoi_keyed *keys)
         uint32_t qu = quantise(x->u0 + x->u1, lo[c][0], scale[c][0]), qv = quantise(x->v0 + x->v1, lo[c][1], scale[c][1]);
         keys[i].key = c << (2 * HILBERT_BITS) | hilbert(qu, qv);
         keys[i].value = (uint32_t)i;
+        if (gnoi_stopped_at(b->context, i))
+            return 0;
     }
+    return 1;
 }
 
 /* ---- leaves ----------------------------------------------------------------------------------------------------- */
@@ -264,7 +270,8 @@ static void plan_levels(gnoi_tree *tree)
 
 static size_t leaf_count(const gnoi_tree *tree) { return (tree->entry_count + GNOI_TREE_FAN - 1) / GNOI_TREE_FAN; }
 
-static void fill(const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, const gnoi_keyed *keys)
+/* 0 when stopped. */
+static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, const gnoi_keyed *keys)
 {
     for (size_t i = 0; i < tree->node_count; i++)
         node_clear(&tree->nodes[i]);
@@ -272,13 +279,17 @@ static void fill(const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, c
         tree->caster[i] = b->number[keys[i].value];
         node_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, &b->box[keys[i].value]);
     }
-    for (size_t i = 0; tree->leaves && i < leaf_count(tree); i++)
+    for (size_t i = 0; tree->leaves && i < leaf_count(tree); i++) {
         set_leaf(scene, tree, i, &tree->leaves[i]);
+        if (gnoi_stopped_at(context, i))
+            return 0;
+    }
     for (int level = 1; level < tree->levels; level++) {
         size_t below = tree->level_first[level - 1], first = tree->level_first[level];
         for (size_t i = below; i < first; i++)
             node_set_union(&tree->nodes[first + (i - below) / GNOI_TREE_FAN], (i - below) % GNOI_TREE_FAN, &tree->nodes[i]);
     }
+    return 1;
 }
 
 gno_status gnoi_tree_pack(gno_context *context, const gnoi_boxes *b, const gno_scene *scene, gnoi_tree *tree)
@@ -293,9 +304,11 @@ gno_status gnoi_tree_pack(gno_context *context, const gnoi_boxes *b, const gno_s
     keys = gnoi_malloc(context, 2 * b->count, sizeof *keys);
     good = tree->caster && tree->nodes && (tree->leaves || !scene) && keys;
     if (good) {
-        order_boxes(b, keys);
+        good = order_boxes(b, keys);
+    }
+    if (good) {
         gnoi_sort(keys, keys + b->count, b->count);
-        fill(scene, tree, b, keys);
+        good = !gnoi_stopped(context) && fill(context, scene, tree, b, keys);
     }
     gnoi_free(context, keys, 2 * b->count, sizeof *keys);
     return good ? GNO_OK : GNO_ERROR_MEMORY;
