@@ -1,13 +1,7 @@
 /* batch.c -- see batch.h. */
 #include "shade/batch.h"
+#include "base/vector.h"
 #include <string.h>
-
-/* The same C compiled for wider vectors too, chosen when the program starts; plain IEEE arithmetic in all of them. */
-#if defined(__x86_64__) && defined(__gnu_linux__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
-#define VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define VECTOR_CLONES
-#endif
 
 #define INLINE static inline __attribute__((always_inline))
 

@@ -52,7 +52,7 @@ int gnoi_search_packet(const gnoi_search *search, size_t packet, gnoi_findings *
 int gnoi_search_poly(const gnoi_search *search, uint32_t poly, gnoi_findings *findings);
 
 /* Sorts casters and drops repeats; returns how many are left. */
-size_t gnoi_sort_casters(uint32_t *casters, size_t count);
+size_t gnoi_sort_casters(gno_context *context, uint32_t *casters, size_t count);
 
 /* The shade of a polygon from two of its columns: of one prepared polygon on two faces (same), or of two parts. */
 gno_shade gnoi_shade_join(gno_shade a, gno_shade b, int same);

@@ -27,7 +27,7 @@ static void sort_columns(gnoi_findings *f)
 {
     size_t from = 0, to = 0;
     for (size_t i = 0; i < f->column_count; i++) {
-        size_t count = f->columns[i].count, left = gnoi_sort_casters(f->casters + from, count);
+        size_t count = f->columns[i].count, left = gnoi_sort_casters(f->context, f->casters + from, count);
         memmove(f->casters + to, f->casters + from, left * sizeof *f->casters);
         f->columns[i].count = (uint32_t)left;
         from += count;
@@ -126,7 +126,7 @@ static void close_up(gno_matrix *m)
 {
     size_t to = 0, from = 0;
     for (size_t s = 0; s < m->size; s++) {
-        size_t count = m->start[s + 1] - from, left = gnoi_sort_casters(m->casters + from, count);
+        size_t count = m->start[s + 1] - from, left = gnoi_sort_casters(m->context, m->casters + from, count);
         memmove(m->casters + to, m->casters + from, left * sizeof *m->casters);
         from = m->start[s + 1];
         m->start[s] = to;

@@ -8,7 +8,9 @@
  * single precision relative to the packet, with slacks that outweigh its rounding; only what remains is tested one by one.
  */
 #include "shadow/matrix.h"
+#include "base/sort.h"
 #include "base/tolerance.h"
+#include "base/vector.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -121,28 +123,40 @@ static float plane_at_origin(const gnoi_packet *p, vec3 normal, double constant,
     return (float)(v3_dot(normal, v3_from(p->origin)) + constant);
 }
 
+static int none_left(const int32_t alive[GNOI_PACKET])
+{
+    int32_t some = 0;
+    for (int k = 0; k < GNOI_PACKET; k++)
+        some |= alive[k];
+    return !some;
+}
+
 /* maybe: not all points lie outside one edge's plane, and one lies above the receiver's plane. sure: one of a polygon's own corners lies
- * above it and within all edges: the light's path to the point below is blocked there. */
-static verdicts test_packet(const gnoi_packet *p, const gnoi_shaded *r)
+ * above it and within all edges: the light's path to the point below is blocked there. Only the entries of `mask` are asked about. */
+VECTOR_CLONES static verdicts test_packet(const gnoi_packet *p, const gnoi_shaded *r, unsigned mask)
 {
     float slack = PACKET_SLACK * p->extent, n[3], c, d[GNOI_PACKET];
     float low = (float)r->tolerance - slack, high = (float)r->tolerance + 2 * slack;
-    int32_t inside[GNOI_PACKET_CORNERS][GNOI_PACKET], above[GNOI_PACKET], alive[GNOI_PACKET];
+    int32_t inside[GNOI_PACKET_CORNERS][GNOI_PACKET], alive[GNOI_PACKET], wanted[GNOI_PACKET];
     verdicts v = {0, 0};
     c = plane_at_origin(p, r->height.a, r->height.b, n);
-    for (int k = 0; k < GNOI_PACKET; k++)
-        above[k] = 0;
+    for (int k = 0; k < GNOI_PACKET; k++) {
+        wanted[k] = (int32_t)(mask >> k & 1);
+        alive[k] = 0;
+    }
     for (int i = 0; i < GNOI_PACKET_CORNERS; i++) {
         distances(p, i, n, c, d);
         for (int k = 0; k < GNOI_PACKET; k++) {
-            above[k] |= d[k] > low;
+            alive[k] |= d[k] > low;
             inside[i][k] = d[k] > high;
         }
     }
     for (int k = 0; k < GNOI_PACKET; k++)
-        alive[k] = above[k];
+        alive[k] &= wanted[k];
     for (int e = 0; e < r->edge_count; e++) {
         int32_t some_in[GNOI_PACKET] = {0};
+        if (none_left(alive))
+            return v;
         c = plane_at_origin(p, r->edge[e], -v3_dot(r->edge[e], r->facet.corner[e]), n);
         for (int i = 0; i < GNOI_PACKET_CORNERS; i++) {
             distances(p, i, n, c, d);
@@ -174,8 +188,8 @@ static int search_list(const gnoi_search *search, const gnoi_shaded *r, uint32_t
         verdicts v;
         if (!mask)
             continue;
-        v = test_packet(packet, r);
-        for (mask &= v.maybe; mask; mask &= mask - 1) {
+        v = test_packet(packet, r, mask);
+        for (mask = v.maybe; mask; mask &= mask - 1) {
             unsigned k = gnoi_lowest_bit(mask);
             uint32_t other = packet->poly[k];
             const gnoi_poly *caster = &prep->polys[other];
@@ -286,8 +300,24 @@ static int compare_numbers(const void *a, const void *b)
 }
 
 #define SHORT_COLUMN 24
+#define LONG_COLUMN 4096
 
-size_t gnoi_sort_casters(uint32_t *casters, size_t count)
+/* By digits; returns 0 when there is no memory for it. */
+static int sort_long_column(gno_context *context, uint32_t *casters, size_t count)
+{
+    gnoi_keyed *pairs = gnoi_malloc(context, 2 * count, sizeof *pairs);
+    if (!pairs)
+        return 0;
+    for (size_t i = 0; i < count; i++)
+        pairs[i].key = pairs[i].value = casters[i];
+    gnoi_sort(pairs, pairs + count, count);
+    for (size_t i = 0; i < count; i++)
+        casters[i] = pairs[i].key;
+    gnoi_free(context, pairs, 2 * count, sizeof *pairs);
+    return 1;
+}
+
+size_t gnoi_sort_casters(gno_context *context, uint32_t *casters, size_t count)
 {
     size_t n = 0;
     if (count <= SHORT_COLUMN) {
@@ -298,7 +328,7 @@ size_t gnoi_sort_casters(uint32_t *casters, size_t count)
                 casters[j] = casters[j - 1];
             casters[j] = c;
         }
-    } else {
+    } else if (count < LONG_COLUMN || !sort_long_column(context, casters, count)) {
         qsort(casters, count, sizeof *casters, compare_numbers);
     }
     for (size_t i = 0; i < count; i++)
