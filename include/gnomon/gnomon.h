@@ -451,6 +451,7 @@ typedef struct gno_stats {
     double total_seconds;
     double polygons;        /* prepared polygons */
     double lights;          /* after splitting area lights */
+    double shadows_built;   /* of these, those whose casters were found in this call; 0 when kept from an earlier view */
     double tiles;
     double spans;           /* visible spans found */
     double columns;         /* (receiver, light) columns asked for, per tile */

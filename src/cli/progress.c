@@ -57,6 +57,15 @@ static void draw(const progress *shown, double now)
     fflush(stderr);
 }
 
+void progress_set_frame(progress *shown, int frame, int frames)
+{
+    shown->frame = frame;
+    shown->frames = frames > 1 ? frames : 0;
+    if (frame == 0) {
+        shown->stage_fraction = 0.0; /* of what came before, such as reading */
+    }
+}
+
 static int on_progress(void *user, const char *stage, double fraction)
 {
     progress *shown = user;
@@ -65,6 +74,12 @@ static int on_progress(void *user, const char *stage, double fraction)
         return stop;
     }
     const double now = seconds_now();
+    if (shown->frames > 0) {
+        /* Of a frame only the drawing counts: what comes before it takes next to no time but in the first. */
+        fraction = (shown->frame + (strcmp(stage, "render") == 0 ? fraction : 0.0)) / shown->frames;
+        fraction = fraction < shown->stage_fraction ? shown->stage_fraction : fraction;
+        stage = "frames";
+    }
     /* A stage can come again (a light after the other): its clock starts anew when its share falls. */
     if (strncmp(stage, shown->stage, sizeof shown->stage - 1) != 0 || fraction < shown->stage_fraction) {
         snprintf(shown->stage, sizeof shown->stage, "%s", stage);

@@ -1,8 +1,9 @@
 /* render.c -- gnomon render: a scene file to pictures.
  *
- * Place: arguments -> settings -> gno_scene_load -> gno_render -> gno_picture_write for every -o -> --stats.
+ * Place: arguments -> settings -> gno_scene_load -> for every frame (frames.h): gno_render -> gno_picture_write for every -o -> --stats.
  */
 #include "cli/cli.h"
+#include "cli/frames.h"
 #include "cli/interrupt.h"
 #include "cli/layers.h"
 #include "cli/options.h"
@@ -15,12 +16,14 @@
 #include <string.h>
 #include <unistd.h>
 
-enum option_id { OUTPUT, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, AOV, RANKS, MEMORY, SET, STATS, QUIET, HELP };
+enum option_id { OUTPUT, FRAMES, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, AOV, RANKS, MEMORY, SET, STATS, QUIET, HELP };
 
 static const option options[] = {
     [OUTPUT] = {"output", 'o', "FILE", "picture, by extension: .png (sRGB), .exr (linear), .pfm (linear);\n"
                                        "\"-\" is a PNG on standard output; may be given several times;\n"
                                        "without it the scene's name with .png, in the current folder"},
+    [FRAMES] = {"frames", 0, "A:B", "frames of the scene's camera.path: A to B, one, or all; several need\n"
+                                    "a number in FILE, such as out_%04d.png, which alone means all"},
     [SIZE] = {"size", 0, "WxH", "pixels, instead of the scene's"},
     [LINES] = {"lines", 0, "N or B:N", "sample lines per pixel row: N everywhere, or B and N where the\n"
                                        "picture varies (N an odd multiple of B)"},
@@ -49,6 +52,7 @@ enum { OPTIONS = sizeof options / sizeof options[0] };
 typedef struct job {
     const char *scene_path;
     outputs files;
+    frame_wish frames;
     char *default_output;
     gno_setting *settings;
     size_t setting_count;
@@ -74,6 +78,7 @@ static int help(void)
            "  gnomon render town.yaml -o town.png -o town.exr --size 1920x1080\n"
            "  gnomon render bunny.obj --set camera.eye=[0,-3,1] --set 'image.background=[1,1,1]'\n"
            "  gnomon render town.yaml -o town.exr --aov depth,normal,object\n"
+           "  gnomon render town.yaml -o town_%%04d.png --frames all       every frame of its camera.path\n"
            "  gnomon render town.yaml -o - --size 320x180 | display -\n"
            "  gnomon render town.yaml --threads 1 --stats -              how long each stage took\n",
            def.base_lines, def.lines);
@@ -109,6 +114,8 @@ static int take_option(job *work, int id, char *value)
         }
         work->files.paths[work->files.count++] = value;
         return -1;
+    case FRAMES:
+        return frames_parse(value, &work->frames) ? -1 : usage("render", "--frames %s: not all, a frame, or A:B with A not after B", value);
     case SIZE:
         return parse_size(value, &work->width, &work->height) ? -1
                                        : usage("render", "--size %s: not WIDTHxHEIGHT, each from 1 to %d", value, GNO_MAX_IMAGE_SIDE);
@@ -182,7 +189,8 @@ static int read_arguments(job *work, int argc, char **argv)
         return usage("render", "no scene given");
     }
     if (work->files.count == 0) {
-        work->default_output = output_default(work->scene_path, ".png");
+        const int several = work->frames.all || work->frames.last > work->frames.first;
+        work->default_output = output_default(work->scene_path, several ? "_%04d.png" : ".png");
         if (work->default_output == NULL) {
             say("out of memory");
             return EXIT_FAILED;
@@ -226,33 +234,30 @@ static gno_status load(const job *work, gno_context *context, gno_scene **scene)
 
 /* A stream leaves nothing behind, and a reader that does not read could hold it up for ever: there a signal ends the
  * program at once. A file that is being written is given up and leaves nothing behind. */
-static gno_status write_pictures(const job *work, gno_scene *scene, const float *rgb, const gno_layers *layers)
+static gno_status write_picture(const job *work, gno_scene *scene, int i, int frame, const float *rgb, const gno_layers *layers)
 {
     gno_context *context = gno_scene_context(scene);
     const gno_image_def image = gno_scene_image(scene);
     gno_picture_def def = gno_picture_def_default();
-    def.exposure = work->exposure;
-    for (int i = 0; i < work->files.count; i++) {
-        const int stream = output_is_stream(work->files.paths[i]);
-        if (interrupt_signal() != 0) {
-            return gno_context_fail(context, GNO_ERROR_CANCELLED, "interrupted");
-        }
-        if (stream) {
-            interrupt_release();
-        }
-        def.depth = work->files.depths[i];
-        const char *path = work->files.paths[i];
-        const gno_status status = layers != NULL && output_has_layers(path)
-                                      ? gno_picture_write_layers(scene, path, &def, rgb, layers)
-                                      : gno_picture_write(context, path, &def, image.width, image.height, rgb);
-        if (status != GNO_OK) {
-            return status;
-        }
-        if (stream) {
-            interrupt_catch();
-        }
+    const int stream = output_is_stream(work->files.paths[i]);
+    char *path = frame < 0 ? NULL : frame_name(work->files.paths[i], frame);
+    const char *name = frame < 0 ? work->files.paths[i] : path;
+    if (name == NULL) {
+        return gno_context_fail(context, GNO_ERROR_MEMORY, "out of memory");
     }
-    return interrupt_signal() == 0 ? GNO_OK : gno_context_fail(context, GNO_ERROR_CANCELLED, "interrupted");
+    def.exposure = work->exposure;
+    def.depth = work->files.depths[i];
+    if (stream) {
+        interrupt_release();
+    }
+    const gno_status status = layers != NULL && output_has_layers(name)
+                                  ? gno_picture_write_layers(scene, name, &def, rgb, layers)
+                                  : gno_picture_write(context, name, &def, image.width, image.height, rgb);
+    if (stream && status == GNO_OK) {
+        interrupt_catch();
+    }
+    free(path);
+    return status;
 }
 
 /* size: bytes, 0 when not known. */
@@ -268,61 +273,97 @@ static int no_room(gno_context *context, const char *what, const gno_image_def *
     return EXIT_FAILED;
 }
 
-static int run_scene(const job *work, gno_context *context, gno_scene *scene, progress *shown, double begun)
+/* frame: its number for the names, or -1. */
+static gno_status write_pictures(const job *work, gno_scene *scene, int frame, const float *rgb, const gno_layers *layers)
+{
+    gno_status status = GNO_OK;
+    for (int i = 0; i < work->files.count && status == GNO_OK && interrupt_signal() == 0; i++) {
+        status = write_picture(work, scene, i, frame, rgb, layers);
+    }
+    return status == GNO_OK && interrupt_signal() != 0 ? gno_context_fail(gno_scene_context(scene), GNO_ERROR_CANCELLED, "interrupted") : status;
+}
+
+/* One frame; its times and counts go to `stats`. */
+static gno_status run_frame(const job *work, gno_scene *scene, const frame_plan *plan, int frame, const gno_render_def *how, float *rgb,
+                            frame_stats *stats)
+{
+    const double begun = seconds_now();
+    gno_status status = frames_set_camera(plan, scene, frame);
+    if (status == GNO_OK) {
+        status = gno_render(scene, how, rgb, &stats->engine);
+    }
+    const double rendered = seconds_now();
+    if (status == GNO_OK) {
+        status = write_pictures(work, scene, plan->numbered ? frame : -1, rgb, how->layers);
+    }
+    stats->frame = frame;
+    stats->render_seconds = rendered - begun;
+    stats->write_seconds = seconds_now() - rendered;
+    return status;
+}
+
+static int thread_count(const job *work)
+{
+    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
+    return work->def.threads > 0            ? work->def.threads
+           : processors < 1                 ? 1
+           : processors > GNO_MAX_THREADS ? GNO_MAX_THREADS
+                                            : (int)processors;
+}
+
+static gno_status run_frames(const job *work, gno_scene *scene, const frame_plan *plan, const gno_render_def *how, float *rgb,
+                             progress *shown, run_stats *stats)
+{
+    gno_status status = GNO_OK;
+    interrupt_catch();
+    for (int i = 0; i < plan->count && status == GNO_OK; i++) {
+        progress_set_frame(shown, i, plan->count);
+        status = run_frame(work, scene, plan, plan->first + i, how, rgb, &stats->frames[stats->frame_count++]);
+    }
+    progress_clear(shown);
+    return status;
+}
+
+/* Buffers are made once for all frames. Through the context, so that the picture is part of the peak memory told by --stats. */
+static int run_scene(const job *work, gno_context *context, gno_scene *scene, const frame_plan *plan, progress *shown, double begun)
 {
     const gno_image_def image = gno_scene_image(scene);
     const size_t bytes = (size_t)image.width * (size_t)image.height * 3 * sizeof(float);
-    run_stats stats;
-    memset(&stats, 0, sizeof stats);
-    stats.scene = work->scene_path;
-    stats.width = image.width;
-    stats.height = image.height;
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    stats.threads = work->def.threads > 0           ? work->def.threads
-                    : processors < 1                ? 1
-                    : processors > GNO_MAX_THREADS ? GNO_MAX_THREADS
-                                                    : (int)processors;
-    stats.load_seconds = seconds_now() - begun;
-    /* Through the context, so that the picture is part of the peak memory told by --stats. */
-    float *rgb = gno_context_realloc(context, NULL, 0, bytes);
-    if (rgb == NULL) {
-        return no_room(context, "a picture", &image, (double)bytes);
-    }
+    run_stats stats = {work->scene_path, image.width, image.height, thread_count(work), plan->numbered, 0, NULL, seconds_now() - begun, 0, 0};
     gno_render_def how = work->def;
     layer_buffers buffers;
     const int has_layers = work->layers.wanted != 0;
+    float *rgb = gno_context_realloc(context, NULL, 0, bytes);
+    stats.frames = calloc((size_t)plan->count, sizeof *stats.frames);
+    if (rgb == NULL || stats.frames == NULL) {
+        if (rgb != NULL) {
+            gno_context_realloc(context, rgb, bytes, 0);
+        }
+        free(stats.frames);
+        return no_room(context, "a picture", &image, (double)bytes);
+    }
+    int result = EXIT_FAILED;
     if (has_layers && !layers_allocate(&work->layers, scene, &buffers)) {
-        gno_context_realloc(context, rgb, bytes, 0);
-        return no_room(context, "the layers of a picture", &image, 0.0);
-    }
-    how.layers = has_layers ? &buffers.layers : NULL;
-    const double rendered_from = seconds_now();
-    interrupt_catch();
-    gno_status status = gno_render(scene, &how, rgb, &stats.engine);
-    progress_clear(shown);
-    const double written_from = seconds_now();
-    if (status == GNO_OK) {
-        status = write_pictures(work, scene, rgb, how.layers);
-    }
-    const double ended = seconds_now();
-    if (has_layers) {
-        layers_free(&buffers);
-    }
-    gno_context_realloc(context, rgb, bytes, 0);
-    if (status != GNO_OK) {
-        return report(context, shown);
-    }
-    interrupt_release();
-    stats.render_seconds = written_from - rendered_from;
-    stats.write_seconds = ended - written_from;
-    stats.total_seconds = ended - begun;
-    gno_context_memory(context, &stats.peak_memory);
-    if (shown->terminal && !work->quiet) {
-        for (int i = 0; i < work->files.count; i++) {
-            say("%s: %d x %d in %.2f s", work->files.paths[i], image.width, image.height, stats.total_seconds);
+        no_room(context, "the layers of a picture", &image, 0.0);
+    } else {
+        how.layers = has_layers ? &buffers.layers : NULL;
+        result = run_frames(work, scene, plan, &how, rgb, shown, &stats) == GNO_OK ? EXIT_DONE : report(context, shown);
+        if (has_layers) {
+            layers_free(&buffers);
         }
     }
-    return work->stats_path != NULL ? stats_write(work->stats_path, &stats) : EXIT_DONE;
+    gno_context_realloc(context, rgb, bytes, 0);
+    if (result == EXIT_DONE) {
+        interrupt_release();
+        stats.total_seconds = seconds_now() - begun;
+        gno_context_memory(context, &stats.peak_memory);
+        for (int i = 0; i < work->files.count && shown->terminal && !work->quiet; i++) {
+            say("%s: %d x %d in %.2f s", work->files.paths[i], image.width, image.height, stats.total_seconds);
+        }
+        result = work->stats_path != NULL ? stats_write(work->stats_path, &stats) : EXIT_DONE;
+    }
+    free(stats.frames);
+    return result;
 }
 
 static int run_job(const job *work)
@@ -337,7 +378,15 @@ static int run_job(const job *work)
         say("out of memory");
         return EXIT_FAILED;
     }
-    const int status = load(work, context, &scene) == GNO_OK ? run_scene(work, context, scene, &shown, begun) : report(context, &shown);
+    int status;
+    if (load(work, context, &scene) == GNO_OK) {
+        frame_plan plan;
+        progress_clear(&shown);
+        status = frames_plan(&work->frames, work->scene_path, scene, work->files.paths, work->files.count, &plan);
+        status = status < 0 ? run_scene(work, context, scene, &plan, &shown, begun) : status;
+    } else {
+        status = report(context, &shown);
+    }
     gno_scene_destroy(scene);
     gno_context_destroy(context);
     return status;

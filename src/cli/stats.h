@@ -6,11 +6,19 @@
 
 #include <stdio.h>
 
+typedef struct frame_stats {
+    int frame;
+    gno_stats engine;
+    double render_seconds, write_seconds;
+} frame_stats;
+
 typedef struct run_stats {
     const char *scene;
     int width, height, threads;
-    gno_stats engine;
-    double load_seconds, render_seconds, write_seconds, total_seconds;
+    int numbered; /* a film: every frame is told, then the totals */
+    int frame_count;
+    frame_stats *frames;
+    double load_seconds, total_seconds;
     size_t peak_memory;
 } run_stats;
 

@@ -243,6 +243,7 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, const gnoi
 {
     gnoi_frame_job frame;
     double start = gnoi_now(), t;
+    unsigned long builds = scene->shadow_builds;
     gno_status status = gnoi_frame_job_make(scene, def, &frame, stats);
     frame.rgb = bands->rgb;
     t = gnoi_now();
@@ -254,6 +255,7 @@ static gno_status render(gno_scene *scene, const gno_render_def *def, const gnoi
     stats->total_seconds = t - start;
     stats->polygons = (double)scene->prepared.poly_count;
     stats->lights = frame.lamp_count;
+    stats->shadows_built = scene->shadow_builds == builds ? 0 : frame.lamp_count;
     stats->tiles = (double)frame.bins.tiles_x * frame.bins.tiles_y;
     gnoi_frame_job_free(&frame);
     gno_context_memory(scene->context, &stats->peak_memory);

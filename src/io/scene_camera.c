@@ -10,7 +10,7 @@
 
 static const char *const camera_types[] = {"perspective", "orthographic", NULL};
 
-enum { TYPE, EYE, TARGET, UP, FOV, HEIGHT, FIELDS };
+enum { TYPE, EYE, TARGET, UP, FOV, HEIGHT, PATH, FIELDS };
 
 static const gnoi_field fields[FIELDS] = {
     [TYPE] = {.key = "type", .kind = GNOI_FIELD_CHOICE, .offset = offsetof(gno_camera, type), .choices = camera_types},
@@ -19,6 +19,7 @@ static const gnoi_field fields[FIELDS] = {
     [UP] = {.key = "up", .kind = GNOI_FIELD_DIRECTION, .offset = offsetof(gno_camera, up)},
     [FOV] = {.key = "fov", .kind = GNOI_FIELD_INSIDE, .offset = offsetof(gno_camera, fov), .high = 180},
     [HEIGHT] = {.key = "height", .kind = GNOI_FIELD_ABOVE_0, .offset = offsetof(gno_camera, height)},
+    [PATH] = {.key = "path", .kind = GNOI_FIELD_NODE}, /* scene_path.c */
 };
 
 static double largest(const double v[3]) { return fmax(fabs(v[0]), fmax(fabs(v[1]), fabs(v[2]))); }

@@ -265,6 +265,7 @@ static gno_status set_view(gno_scene *scene, const gnoi_yaml *yaml, const gnoi_y
     if (!has_camera) status = place_camera(scene, f, &image, &camera);
     if (status == GNO_OK && seen[CAMERA]) status = gnoi_read_camera(yaml, seen[CAMERA], &camera);
     if (status == GNO_OK) status = gno_scene_set_camera(scene, &camera);
+    if (status == GNO_OK && seen[CAMERA]) status = gnoi_read_camera_path(yaml, seen[CAMERA], scene);
     if (status == GNO_OK) status = gno_scene_set_image(scene, &image);
     if (status == GNO_OK) status = gno_scene_set_ambient(scene, ambient);
     return status;

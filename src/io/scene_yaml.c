@@ -56,6 +56,7 @@ static gno_status read_view(gnoi_scene_reader *reader, const gnoi_yaml_node *con
     if (status != GNO_OK) return status;
     if (seen[CAMERA] && (status = gnoi_read_camera(reader->yaml, seen[CAMERA], &camera)) == GNO_OK) {
         status = gnoi_wrap(reader->yaml, seen[CAMERA], gno_scene_set_camera(reader->scene, &camera));
+        if (status == GNO_OK) status = gnoi_read_camera_path(reader->yaml, seen[CAMERA], reader->scene);
     }
     if (status != GNO_OK) return status;
     if (seen[AMBIENT] && (status = gnoi_read_ambient(reader->yaml, seen[AMBIENT], ambient)) == GNO_OK) {

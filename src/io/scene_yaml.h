@@ -61,6 +61,8 @@ typedef struct gnoi_object_entry {
 gno_status gnoi_read_image(const gnoi_yaml *yaml, const gnoi_yaml_node *node, gno_image_def *image);
 gno_status gnoi_read_ambient(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double ambient[3]);
 gno_status gnoi_read_camera(const gnoi_yaml *yaml, const gnoi_yaml_node *node, gno_camera *camera);
+/* The camera's `path`, if its section has one; the scene has the camera already. */
+gno_status gnoi_read_camera_path(const gnoi_yaml *yaml, const gnoi_yaml_node *camera_node, gno_scene *scene);
 gno_status gnoi_read_lights(gnoi_scene_reader *reader, const gnoi_yaml_node *node);
 gno_status gnoi_read_materials(gnoi_scene_reader *reader, const gnoi_yaml_node *node);
 

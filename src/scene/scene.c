@@ -130,6 +130,7 @@ void gno_scene_destroy(gno_scene *scene)
         return;
     }
     context = scene->context;
+    gnoi_scene_drop_path(scene);
     gnoi_scene_changed(scene);
     for (i = 0; i < scene->object_count; i++) {
         gnoi_free(context, scene->objects[i].name, scene->objects[i].name_size, 1);

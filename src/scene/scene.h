@@ -117,11 +117,14 @@ struct gno_scene {
     size_t light_count, light_capacity;
     gnoi_named_light *lights;
     gno_camera camera;
+    struct gno_camera_path *path; /* NULL: none */
+    struct gno_camera_key *path_keys; /* of the path; owned */
     gno_image_def image;
     double ambient[3];
     unsigned long changes; /* how often gnoi_scene_changed was called */
     gnoi_prepared prepared;
     gnoi_shadow_cache *shadows; /* kept from view to view; NULL until a view needs it */
+    unsigned long shadow_builds; /* how often `shadows` was filled */
     void (*free_shadows)(gno_context *context, gnoi_shadow_cache *shadows); /* set by whoever fills `shadows` */
 };
 
@@ -154,6 +157,9 @@ int gnoi_solid_outside(const gno_scene *scene, size_t solid, vec3 point);
 
 /* names.c */
 void gnoi_scene_free_names(gno_scene *scene);
+
+/* Takes the camera's path away. */
+void gnoi_scene_drop_path(gno_scene *scene);
 
 /* Drops what was derived from geometry, materials or lights; every change of them calls it. */
 void gnoi_scene_changed(gno_scene *scene);

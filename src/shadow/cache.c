@@ -117,6 +117,7 @@ gno_status gnoi_shadow_cache_build(gno_scene *scene, const gnoi_view *view, int 
         return status == GNO_ERROR_MEMORY ? gnoi_fail(context, status, "out of memory for the shadow matrix") : status;
     }
     scene->shadows = cache;
+    scene->shadow_builds++;
     scene->free_shadows = free_cache;
     return GNO_OK;
 }
