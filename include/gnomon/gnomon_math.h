@@ -142,8 +142,9 @@ GNO_API double gno_procedural_value(const gno_procedural *procedural, const gno_
  * one of the arguments. Where Q_x x Q_y is zero the result is zero. */
 GNO_API void gno_bump_normal(const double qx[3], const double qy[3], double px, double py, double bumped[3]);
 
-/* The unit normal of a surface raised by `amount` (in the space of the pattern's origin) times the pattern's value, by finite differences
- * over the pixel. normal: unit; footprint: as above. The result is on the side of `normal`. */
+/* The unit normal of a surface raised by `amount` times the pattern's value, by finite differences over half a pixel. amount is in
+ * the pattern's unit, the least of its scale: a pattern or an object twice as large has bumps twice as high, which look alike.
+ * normal: unit; footprint: as above, in the same space. The result is on the side of `normal`. */
 GNO_API void gno_bump_procedural(const gno_procedural *procedural, double amount, const gno_footprint *footprint,
                                  const double normal[3], double bumped[3]);
 

@@ -107,13 +107,15 @@ enum {
     BANDS = 32,
     POINTS = AROUND * (BANDS - 1) + 2,
     FACES = AROUND * BANDS,
-    CORNERS = AROUND * (2 * 3 + (BANDS - 2) * 4)
+    CORNERS = AROUND * (2 * 3 + (BANDS - 2) * 4),
+    PLACES = (AROUND + 1) * (BANDS + 1) /* on the pattern: the seam's points have two */
 };
 
 typedef struct sphere_mesh {
     double positions[POINTS][3], normals[POINTS][3];
     unsigned ring_start[FACES + 1];
-    int corners[CORNERS];
+    int corners[CORNERS], corner_places[CORNERS];
+    double places[PLACES][2];
 } sphere_mesh;
 
 typedef struct sphere_entry {
@@ -141,16 +143,32 @@ static int sphere_point(int band, int turn)
     return band == BANDS ? POINTS - 1 : 1 + (band - 1) * AROUND + turn % AROUND;
 }
 
+/* S from 0 at the x axis around to 1, T from 0 at the south pole to 1 at the north pole. A triangle's pole lies over its middle. */
+static void sphere_places(sphere_mesh *mesh)
+{
+    for (int i = 0; i < PLACES; i++) {
+        int band = i / (AROUND + 1), turn = i % (AROUND + 1);
+        mesh->places[i][0] = (turn + (band == 0 || band == BANDS ? 0.5 : 0)) / AROUND;
+        mesh->places[i][1] = 1 - (double)band / BANDS;
+    }
+}
+
+static void add_corner(sphere_mesh *mesh, unsigned *corner, int band, int turn)
+{
+    mesh->corner_places[*corner] = band * (AROUND + 1) + turn;
+    mesh->corners[(*corner)++] = sphere_point(band, turn);
+}
+
 static void sphere_faces(sphere_mesh *mesh)
 {
     unsigned corner = 0, face = 0;
     for (int band = 0; band < BANDS; band++) {
         for (int turn = 0; turn < AROUND; turn++) {
             mesh->ring_start[face++] = corner;
-            mesh->corners[corner++] = sphere_point(band, turn);
-            mesh->corners[corner++] = sphere_point(band + 1, turn);
-            if (band < BANDS - 1) mesh->corners[corner++] = sphere_point(band + 1, turn + 1);
-            if (band > 0) mesh->corners[corner++] = sphere_point(band, turn + 1);
+            add_corner(mesh, &corner, band, turn);
+            add_corner(mesh, &corner, band + 1, turn);
+            if (band < BANDS - 1) add_corner(mesh, &corner, band + 1, turn + 1);
+            if (band > 0) add_corner(mesh, &corner, band, turn + 1);
         }
     }
     mesh->ring_start[face] = corner;
@@ -172,6 +190,7 @@ static gno_status add_sphere(gnoi_scene_reader *reader, const gnoi_object_entry 
     sphere_mesh *mesh = gno_context_realloc(reader->context, NULL, 0, sizeof *mesh);
     if (!mesh) return no_memory(reader);
     sphere_points(mesh, &sphere);
+    sphere_places(mesh);
     sphere_faces(mesh);
     gno_mesh_def def = def_for(entry);
     def.vertex_count = def.normal_count = POINTS;
@@ -181,6 +200,9 @@ static gno_status add_sphere(gnoi_scene_reader *reader, const gnoi_object_entry 
     def.ring_start = mesh->ring_start;
     def.corner_count = CORNERS;
     def.corner_vertex = def.corner_normal = mesh->corners;
+    def.texcoord_count = PLACES;
+    def.texcoords = mesh->places[0];
+    def.corner_texcoord = mesh->corner_places;
     status = gnoi_wrap(reader->yaml, entry->node, gno_scene_add_mesh(reader->scene, &def, NULL));
     gno_context_realloc(reader->context, mesh, sizeof *mesh, 0);
     return status;

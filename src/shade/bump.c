@@ -59,7 +59,7 @@ void gno_bump_procedural(const gno_procedural *procedural, double amount, const 
     for (int k = 0; k < 2; k++) {
         vec3 t = v3_scale(k ? y : x, step);
         gno_footprint ahead = moved(f, t), behind = moved(f, v3_scale(t, -1));
-        slope[k] = amount * (gno_procedural_value(procedural, &ahead) - gno_procedural_value(procedural, &behind)) / (2 * step);
+        slope[k] = amount * unit * (gno_procedural_value(procedural, &ahead) - gno_procedural_value(procedural, &behind)) / (2 * step);
     }
     store(x, qx);
     store(y, qy);

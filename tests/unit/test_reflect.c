@@ -256,6 +256,36 @@ static void test_bump_procedural(void **state)
     }
 }
 
+/* Point, pixel and pattern seven times as large: the same normal. */
+static void test_bump_of_any_size(void **state)
+{
+    (void)state;
+    for (int pattern = GNO_PATTERN_WOOD; pattern <= GNO_PATTERN_CLOUD; pattern++) {
+        uint32_t s = 11;
+        for (int i = 0; i < 50; i++) {
+            gno_procedural small = gno_procedural_default((gno_pattern)pattern), large = small;
+            gno_footprint f;
+            double n[3], a[3], b[3];
+            memset(&f, 0, sizeof f);
+            random_unit(&s, n);
+            for (int k = 0; k < 3; k++) {
+                f.point[k] = 10 * next(&s);
+                f.dx[k] = 0.02 * next(&s);
+                f.dy[k] = 0.02 * next(&s);
+                large.scale[k] = 7;
+            }
+            gno_bump_procedural(&small, 0.1, &f, n, a);
+            for (int k = 0; k < 3; k++) {
+                f.point[k] *= 7;
+                f.dx[k] *= 7;
+                f.dy[k] *= 7;
+            }
+            gno_bump_procedural(&large, 0.1, &f, n, b);
+            assert_vector(b, a[0], a[1], a[2], 1e-6);
+        }
+    }
+}
+
 static void test_height_table(void **state)
 {
     static const float values[6] = {0, 1, 2, 3, 4, 5}; /* 3 wide, 2 high */
@@ -290,6 +320,7 @@ int main(void)
         cmocka_unit_test(test_bump_is_the_raised_plane),
         cmocka_unit_test(test_bump_follows_the_object),
         cmocka_unit_test(test_bump_procedural),
+        cmocka_unit_test(test_bump_of_any_size),
         cmocka_unit_test(test_height_table),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;

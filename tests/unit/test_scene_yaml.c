@@ -296,6 +296,11 @@ static void test_sphere(void **state)
             const double *v = p.positions + 3 * p.corner_vertex[c], *n = p.normals + 3 * p.corner_normal[c];
             three(v, 1 + 0.5 * n[0], 2 + 0.5 * n[1], 3 + 0.5 * n[2]);
             near_to(n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1);
+            const double *t = p.texcoords + 2 * p.corner_texcoord[c];
+            double turn = atan2(n[1], n[0]) / 6.283185307179586;
+            near_to(t[1], 1 - acos(n[2]) / 3.141592653589793);
+            if (fabs(n[2]) < 1) near_to(cos(6.283185307179586 * (t[0] - turn)), 1);
+            assert_true(t[0] >= 0 && t[0] <= 1);
         }
     }
     assert_int_equal(gno_scene_prepare(scene, 1, &problems), GNO_OK);
