@@ -278,6 +278,11 @@ typedef struct gno_mesh_def {
     gno_weighting weighting;
     double transform[12]; /* rows of a 3x4 matrix applied to positions; normals take the inverse transpose; default identity */
     int priority;         /* among coplanar polygons the higher is in front; default 0 */
+    int detail_of;        /* number of a polygon already in the scene on which these polygons lie as details (windows, lettering):
+                             they take its plane, are in front of it (priority at least one above its own), receive shadows and
+                             cast none. -1 (default): none. Details may have details */
+    int find_details;     /* 1: polygons of this mesh that lie wholly inside another, larger polygon of a mesh with find_details, in
+                             its plane and facing the same way, become its details; 0 (default): they do not */
 } gno_mesh_def;
 
 GNO_API gno_mesh_def gno_mesh_def_default(void);
@@ -333,6 +338,14 @@ GNO_API gno_terrain gno_terrain_default(void);
  * definition gives the same triangles on every machine. Errors: MEMORY, ARGUMENT, LIMIT; the scene is unchanged then. */
 GNO_API gno_status gno_scene_add_terrain(gno_scene *scene, const gno_terrain *terrain, const gno_mesh_def *look, size_t *first_polygon);
 
+/* Makes all polygons of an object (a mesh, numbered as added) details of a polygon, which may have been added later; polygon -1:
+ * of none. Errors: ARGUMENT (no such object or polygon; a corner off the polygon's plane by more than 1e-4 of its extent; a detail of
+ * itself). */
+GNO_API gno_status gno_scene_set_detail_of(gno_scene *scene, size_t object, int polygon);
+
+/* Sets find_details of every mesh in the scene. Errors: ARGUMENT. */
+GNO_API gno_status gno_scene_find_details(gno_scene *scene, int find);
+
 GNO_API gno_status gno_scene_set_camera(gno_scene *scene, const gno_camera *camera);
 GNO_API gno_camera gno_scene_camera(const gno_scene *scene);
 GNO_API gno_status gno_scene_set_image(gno_scene *scene, const gno_image_def *image);
@@ -376,6 +389,7 @@ typedef struct gno_polygon {
     int object;   /* number of the mesh it came from */
     int shading;  /* a gno_shading, the mesh's or the material's */
     int priority;
+    int detail_of; /* as its mesh was given it, -1: none */
 } gno_polygon;
 
 GNO_API gno_status gno_scene_polygon(const gno_scene *scene, size_t index, gno_polygon *polygon);
@@ -384,6 +398,7 @@ GNO_API gno_status gno_scene_polygon(const gno_scene *scene, size_t index, gno_p
 typedef struct gno_scene_problems {
     size_t degenerate; /* no area: skipped */
     size_t non_planar; /* split into triangles */
+    size_t details;    /* found to be details of others (find_details): not a problem, but a change */
 } gno_scene_problems;
 
 /* Prepares the scene if need be (planes, triangulations, vertex normals); rendering does it by itself. */

@@ -118,8 +118,8 @@ void info_json(const summary *found)
             print_material(&material, found->material_polygons[i]);
         }
     }
-    printf("],\n  \"problems\": {\"degenerate\": %zu, \"non_planar\": %zu, \"warnings\": [", found->problems.degenerate,
-           found->problems.non_planar);
+    printf("],\n  \"problems\": {\"degenerate\": %zu, \"non_planar\": %zu, \"details_found\": %zu, \"warnings\": [", found->problems.degenerate,
+           found->problems.non_planar, found->problems.details);
     for (size_t i = 0; i < found->warning_count; i++) {
         printf("%s", i > 0 ? ",\n    " : "\n    ");
         json_string(stdout, found->warnings[i]);

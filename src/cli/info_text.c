@@ -141,6 +141,9 @@ static void print_materials(const summary *found)
 static void print_problems(const summary *found)
 {
     const gno_scene_problems *p = &found->problems;
+    if (p->details > 0) {
+        printf("details    %zu found\n", p->details);
+    }
     if (p->degenerate == 0 && p->non_planar == 0 && found->warning_count == 0) {
         printf("problems   none\n");
         return;

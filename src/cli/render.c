@@ -16,7 +16,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum option_id { OUTPUT, FRAMES, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, ENGINE, AOV, RANKS, MEMORY, SET, STATS, QUIET, HELP };
+enum option_id { OUTPUT, FRAMES, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, DETAILS, ENGINE, AOV, RANKS, MEMORY, SET, STATS, QUIET, HELP };
 
 static const option options[] = {
     [OUTPUT] = {"output", 'o', "FILE", "picture, by extension: .png (sRGB), .exr (linear), .pfm (linear);\n"
@@ -32,6 +32,9 @@ static const option options[] = {
     [DEPTH] = {"depth", 0, "BITS", "8 or 16 for PNG (8), 16 or 32 for EXR (16), 32 for PFM"},
     [TERMINATOR] = {"terminator", 0, "KIND", "shadows on smooth-shaded meshes: exact, as the flat facets cast\n"
                                              "them (default), or smooth"},
+    [DETAILS] = {"details", 0, "KIND", "coplanar: polygons lying wholly inside larger ones in their plane,\n"
+                                       "as windows on uncut walls, are drawn on them; or none; instead of\n"
+                                       "what the scene's meshes ask for"},
     [ENGINE] = {"engine", 0, "NAME", "scanline (default); weiler-atherton: visible pieces as polygons, painted\n"
                                  "with exact coverage (--lines has no meaning there)"},
     [AOV] = {"aov", 0, "LIST", "layers beside the picture in .exr files, with commas between:\n" LAYER_NAMES},
@@ -57,6 +60,7 @@ typedef struct job {
     gno_setting *settings;
     size_t setting_count;
     int width, height; /* 0: the scene's */
+    int details;       /* -1: the scene's */
     int depth;
     double exposure;
     gno_render_def def;
@@ -137,6 +141,9 @@ static int take_option(job *work, int id, char *value)
         work->def.terminator = strcmp(value, "smooth") == 0 ? GNO_TERMINATOR_SMOOTH : GNO_TERMINATOR_EXACT;
         return strcmp(value, "exact") == 0 || strcmp(value, "smooth") == 0 ? -1
                                                                            : usage("render", "--terminator %s: not one of exact, smooth", value);
+    case DETAILS:
+        work->details = strcmp(value, "coplanar") == 0;
+        return work->details || strcmp(value, "none") == 0 ? -1 : usage("render", "--details %s: not one of coplanar, none", value);
     case ENGINE:
         work->def.engine = strcmp(value, "weiler-atherton") == 0 ? GNO_ENGINE_WEILER_ATHERTON : GNO_ENGINE_SCANLINE;
         return strcmp(value, "scanline") == 0 || strcmp(value, "weiler-atherton") == 0
@@ -223,6 +230,9 @@ static int report(gno_context *context, progress *shown)
 static gno_status load(const job *work, gno_context *context, gno_scene **scene)
 {
     gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, scene);
+    if (status == GNO_OK && work->details >= 0) {
+        status = gno_scene_find_details(*scene, work->details);
+    }
     if (status == GNO_OK && work->width != 0) {
         gno_image_def image = gno_scene_image(*scene);
         image.width = work->width;
@@ -397,6 +407,7 @@ static int run(int argc, char **argv)
     job work;
     memset(&work, 0, sizeof work);
     work.exposure = 1.0;
+    work.details = -1;
     work.def = gno_render_def_default();
     work.layers = layers_none();
     /* No more settings than arguments; one more so that the size is never zero. */

@@ -37,6 +37,7 @@ gno_mesh_def gnoi_mesh_def_for(const gnoi_mesh_options *options)
     def.weighting = options->weighting;
     memcpy(def.transform, options->transform, sizeof def.transform);
     def.priority = options->priority;
+    def.find_details = options->find_details;
     return def;
 }
 

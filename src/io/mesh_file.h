@@ -20,6 +20,7 @@ typedef struct gnoi_mesh_options {
     gno_weighting weighting;
     double transform[12]; /* also applied to the file's camera and lights */
     int priority;
+    int find_details;
     const char *name; /* NULL: the file's own object name where it has one */
     int take_camera;  /* 1: the file's first camera, where it has one, becomes the scene's; default 0 */
     int take_lights;  /* 1: the file's lights are added to the scene; default 0 */

@@ -34,12 +34,15 @@ static const double ground_grey = 0.62;
 
 static const char *const axes[] = {"x", "y", "z", NULL};
 
-enum { IMAGE, CAMERA, AMBIENT, LIGHTS, SHADING, CREASE_KEY, UP, FIELDS };
+static const char *const details_names[] = {"none", "coplanar", NULL};
+
+enum { IMAGE, CAMERA, AMBIENT, LIGHTS, SHADING, CREASE_KEY, UP, DETAILS, FIELDS };
 
 typedef struct mesh_view {
     int shading; /* -1: choose */
     double crease;
     int up; /* axis, -1: choose */
+    int find_details;
 } mesh_view;
 
 static const gnoi_field fields[FIELDS] = {
@@ -51,6 +54,7 @@ static const gnoi_field fields[FIELDS] = {
                  .choices = gnoi_shading_names},
     [CREASE_KEY] = {.key = "crease", .kind = GNOI_FIELD_BETWEEN, .offset = offsetof(mesh_view, crease), .high = 180},
     [UP] = {.key = "up", .kind = GNOI_FIELD_CHOICE, .offset = offsetof(mesh_view, up), .choices = axes},
+    [DETAILS] = {.key = "details", .kind = GNOI_FIELD_CHOICE, .offset = offsetof(mesh_view, find_details), .choices = details_names},
 };
 
 /* What the view is built from: unit vectors of the scene, and where the mesh lies. */
@@ -71,6 +75,7 @@ static gno_status load_as(gno_context *context, const char *path, const mesh_vie
     if (status != GNO_OK) return status;
     options.shading = shading;
     options.crease = view->crease;
+    options.find_details = view->find_details;
     options.take_camera = 1;
     options.take_lights = take_lights;
     status = gnoi_mesh_load(*scene, path, &options, result);
@@ -297,7 +302,7 @@ static gno_status dress(gno_scene *scene, const gnoi_yaml *yaml, const gnoi_yaml
 gno_status gnoi_scene_read_mesh(gno_context *context, const gnoi_yaml *yaml, const char *path, gno_scene **scene)
 {
     const gnoi_yaml_node *seen[FIELDS];
-    mesh_view view = {-1, CREASE, -1};
+    mesh_view view = {-1, CREASE, -1, 0};
     gnoi_mesh_result result;
     gno_status status = gnoi_read_fields(yaml, gnoi_yaml_root(yaml), fields, FIELDS, &view, seen);
     if (status == GNO_OK) status = load_mesh(context, path, &view, !seen[LIGHTS], scene, &result);

@@ -7,10 +7,12 @@
 #include <string.h>
 
 static const char *const normals_names[] = {"file", "average", NULL};
+static const char *const details_names[] = {"none", "coplanar", NULL};
 static const char *const weighting_names[] = {"area", "angle", "equal", NULL}; /* by gno_weighting */
 
 enum {
     MESH, POLYGON, SPHERE, TERRAIN, NAME, MATERIAL, SHADING, CREASE, NORMALS, WEIGHTING, TRANSFORM, HOLES, DETAIL_OF, PRIORITY,
+    DETAILS,
     FIELDS
 };
 
@@ -33,6 +35,7 @@ static const gnoi_field fields[FIELDS] = {
     [TRANSFORM] = {.key = "transform", .kind = GNOI_FIELD_NODE},
     [HOLES] = {.key = "holes", .kind = GNOI_FIELD_NODE},
     [DETAIL_OF] = {.key = "detail_of", .kind = GNOI_FIELD_TEXT, AT(detail_of)},
+    [DETAILS] = {.key = "details", .kind = GNOI_FIELD_CHOICE, AT(find_details), .choices = details_names},
     [PRIORITY] = {.key = "priority", .kind = GNOI_FIELD_INTEGER, AT(priority), .low = LEAST_PRIORITY, .high = MOST_PRIORITY},
 };
 
@@ -42,7 +45,7 @@ static const gnoi_field fields[FIELDS] = {
 static gno_status check_kind(const gnoi_yaml *yaml, const gnoi_yaml_node *node, const gnoi_yaml_node *const *seen)
 {
     static const char *const articles[] = {"a mesh", "a polygon", "a sphere", "a terrain"};
-    static const int mesh_only[] = {CREASE, NORMALS, WEIGHTING};
+    static const int mesh_only[] = {CREASE, NORMALS, WEIGHTING, DETAILS};
     int kind = -1;
     for (int i = MESH; i <= TERRAIN; i++) {
         if (!seen[i]) continue;
@@ -56,9 +59,9 @@ static gno_status check_kind(const gnoi_yaml *yaml, const gnoi_yaml_node *node, 
     if (seen[HOLES] && kind != POLYGON) {
         return gnoi_yaml_fail(yaml, seen[HOLES], GNO_ERROR_INPUT, "has no meaning for %s", articles[kind]);
     }
-    for (int i = 0; i < 3 && kind != MESH; i++) {
+    for (int i = 0; i < 4 && kind != MESH; i++) {
         const gnoi_yaml_node *given = seen[mesh_only[i]];
-        int averaged = kind == TERRAIN && mesh_only[i] != NORMALS; /* its normals always are */
+        int averaged = kind == TERRAIN && mesh_only[i] != NORMALS && mesh_only[i] != DETAILS; /* its normals always are */
         if (given && !averaged) return gnoi_yaml_fail(yaml, given, GNO_ERROR_INPUT, "has no meaning for %s", articles[kind]);
     }
     return GNO_OK;
@@ -179,6 +182,27 @@ static gno_status settle_all(gnoi_scene_reader *reader, gnoi_object_entry *entri
     return status;
 }
 
+/* Adds an entry's polygons and notes where in the scene they are. */
+static gno_status add_entry(gnoi_scene_reader *reader, gnoi_object_entry *entry)
+{
+    gno_scene_counts before = gno_scene_count(reader->scene);
+    gno_status status = gnoi_add_shape(reader, entry);
+    entry->first_object = before.objects;
+    entry->first_polygon = before.polygons;
+    entry->object_count = gno_scene_count(reader->scene).objects - before.objects;
+    return status;
+}
+
+/* Tells the scene what lies on what; a parent is one polygon. */
+static gno_status link_detail(gnoi_scene_reader *reader, const gnoi_object_entry *entries, const gnoi_object_entry *entry)
+{
+    gno_status status = GNO_OK;
+    for (size_t i = 0; i < entry->object_count && entry->parent >= 0 && status == GNO_OK; i++) {
+        status = gno_scene_set_detail_of(reader->scene, entry->first_object + i, (int)entries[entry->parent].first_polygon);
+    }
+    return gnoi_wrap(reader->yaml, entry->detail_node, status);
+}
+
 /* ---- all entries -------------------------------------------------------------------------------------------------------- */
 
 static gno_status read_entries(gnoi_scene_reader *reader, const gnoi_yaml_node *node, gnoi_object_entry *entries)
@@ -190,7 +214,8 @@ static gno_status read_entries(gnoi_scene_reader *reader, const gnoi_yaml_node *
     }
     if (status == GNO_OK) status = find_parents(reader, entries, count);
     if (status == GNO_OK) status = settle_all(reader, entries, count);
-    for (size_t i = 0; i < count && status == GNO_OK; i++) status = gnoi_add_shape(reader, &entries[i]);
+    for (size_t i = 0; i < count && status == GNO_OK; i++) status = add_entry(reader, &entries[i]);
+    for (size_t i = 0; i < count && status == GNO_OK; i++) status = link_detail(reader, entries, &entries[i]);
     return status;
 }
 

@@ -236,6 +236,7 @@ static gno_status add_mesh(gnoi_scene_reader *reader, const gnoi_object_entry *e
     options.weighting = (gno_weighting)entry->weighting;
     memcpy(options.transform, entry->transform, sizeof options.transform);
     options.priority = entry->priority;
+    options.find_details = entry->find_details;
     options.name = entry->name;
     gno_status status = gnoi_wrap(reader->yaml, entry->mesh_node, gnoi_mesh_load(reader->scene, path, &options, NULL));
     gno_context_realloc(reader->context, path, size, 0);

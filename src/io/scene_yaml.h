@@ -54,6 +54,8 @@ typedef struct gnoi_object_entry {
     double transform[12];
     int priority;
     int parent; /* index of the object that this one is a detail of, or -1 */
+    int find_details;
+    size_t first_object, object_count, first_polygon; /* what the entry added to the scene */
 } gnoi_object_entry;
 
 /* ---- sections: target structures keep what the section does not give -------------------------------------------------- */

@@ -40,7 +40,7 @@ static int find_boundary(work *w, const unsigned char *may_close)
     unsigned char *taken = gnoi_calloc(w->scene->context, prep->poly_count, 1);
     int good;
     for (size_t i = 0; taken && i < prep->poly_count; i++)
-        taken[i] = may_close[gnoi_solid_of(prep, &prep->polys[i])];
+        taken[i] = !prep->polys[i].detail && may_close[gnoi_solid_of(prep, &prep->polys[i])];
     good = taken && gnoi_boundary_find(w->scene->context, prep, taken, prep->poly_count, &w->boundary);
     gnoi_free(w->scene->context, taken, prep->poly_count, 1);
     return good;

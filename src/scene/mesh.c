@@ -35,6 +35,7 @@ gno_mesh_def gno_mesh_def_default(void)
     mesh.shading = -1;
     mesh.crease = 180;
     mesh.weighting = GNO_WEIGHTING_AREA;
+    mesh.detail_of = -1;
     mesh.transform[0] = mesh.transform[5] = mesh.transform[10] = 1;
     return mesh;
 }
@@ -517,6 +518,8 @@ static gno_status copy_object(const adding *a)
     object->crease = m->crease;
     object->weighting = m->weighting;
     object->priority = m->priority;
+    object->detail_of = m->detail_of < 0 ? -1 : m->detail_of;
+    object->find_details = m->find_details != 0;
     invert(m->transform, object->to_local);
     return GNO_OK;
 }
@@ -572,6 +575,9 @@ static gno_status copy_mesh(const adding *a)
     }
     if (status == GNO_OK) {
         status = copy_corners(a);
+    }
+    if (status == GNO_OK && a->mesh->detail_of >= 0) {
+        status = gnoi_check_detail(a->scene, a->label, a->scene->polygon_count, a->mesh->polygon_count, a->mesh->detail_of);
     }
     return status == GNO_OK ? copy_object(a) : status; /* last, for it owns memory that only commit makes reachable */
 }

@@ -349,6 +349,9 @@ static gno_status fill_prepared(gno_scene *scene, int threads, unsigned char *ki
     }
     out->problems.degenerate = measures.empty;
     out->problems.non_planar = measures.split;
+    if (status == GNO_OK && gnoi_prepare_details(scene) != GNO_OK) {
+        status = out_of_memory(scene);
+    }
     if (status == GNO_OK && gnoi_order_polygons(scene) != GNO_OK) {
         status = out_of_memory(scene);
     }

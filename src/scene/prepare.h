@@ -35,6 +35,9 @@ int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3]
  * the file's normals as unit vectors, averages, and planes' normals where neither serves. */
 gno_status gnoi_prepare_normals(gno_scene *scene);
 
+/* details.c: finds the details among the prepared polygons and gives all details plane and priority. */
+gno_status gnoi_prepare_details(gno_scene *scene);
+
 /* Renumbers everything in scene->prepared by place and fills prepared.positions. */
 gno_status gnoi_order_polygons(gno_scene *scene);
 

@@ -403,5 +403,6 @@ gno_status gno_scene_polygon(const gno_scene *scene, size_t index, gno_polygon *
     polygon->object = scene->polygon_object[index];
     polygon->shading = object->shading >= 0 ? object->shading : (int)scene->materials[polygon->material].shading;
     polygon->priority = object->priority;
+    polygon->detail_of = object->detail_of;
     return GNO_OK;
 }

@@ -20,6 +20,8 @@ typedef struct gnoi_object {
     double crease;
     gno_weighting weighting;
     int priority;
+    int detail_of; /* polygon number or -1 */
+    int find_details;
     double to_local[12]; /* rows of a 3x4 matrix from scene space to that before the transform; zeros where there is none */
 } gnoi_object;
 
@@ -46,6 +48,7 @@ typedef struct gnoi_poly {
     uint32_t ring_count : 24;
     uint32_t shading : 4; /* gno_shading */
     uint32_t two_sided : 1;
+    uint32_t detail : 1; /* lies on another polygon, whose plane it has: receives shadows and casts none */
     uint32_t opaque : 1; /* transmission is zero in all channels, and the texture has no holes */
     uint16_t material;
     int16_t priority;
@@ -131,6 +134,10 @@ struct gno_scene {
 /* Makes scene->prepared valid: planes, splitting of polygons that are not planar, triangulations of smooth n-gons, normals.
  * Warns once with counts of degenerate and non-planar polygons. */
 gno_status gnoi_scene_prepare(gno_scene *scene, int threads);
+
+/* details.c: GNO_ERROR_ARGUMENT unless `count` polygons from `first` on (of the arrays, which may reach beyond the counts) lie in the plane of
+ * polygon `parent`. label: what a message calls them. */
+gno_status gnoi_check_detail(gno_scene *scene, const char *label, size_t first, size_t count, int parent);
 
 /* 1 when the material's texture or bump lies on texture coordinates. */
 static inline int gnoi_is_mapped(const gno_material *m)

@@ -80,13 +80,13 @@ static int find_parts(gno_context *context, gnoi_prepared *prep)
     return !gnoi_stopped(context);
 }
 
-/* Edges of the source polygons, also of those without area, which close seams. */
-static int add_source_edges(const gno_scene *scene, const uint32_t *vertex_number, balance *balances)
+/* Edges of the source polygons, also of those without area, which close seams; not of details, which add nothing to a body. */
+static int add_source_edges(const gno_scene *scene, const uint32_t *vertex_number, const unsigned char *is_detail, balance *balances)
 {
     const uint32_t *vertex_solid = scene->prepared.vertex_solid;
     for (size_t p = 0; p < scene->polygon_count; p++) {
         unsigned ring = scene->polygon_start[p], from = scene->ring_start[ring], to = scene->ring_start[ring + 1];
-        for (unsigned i = from; i < to; i++) {
+        for (unsigned i = from; i < to && !is_detail[p]; i++) {
             uint32_t v = vertex_number[scene->corner_vertex[i]], w = vertex_number[scene->corner_vertex[i + 1 < to ? i + 1 : from]];
             if (v == GNOI_NONE)
                 continue;
@@ -116,6 +116,8 @@ static int add_prepared(const gno_scene *scene, balance *balances)
         const gnoi_poly *poly = &prep->polys[i];
         uint32_t solid = gnoi_solid_of(prep, poly);
         vec3 first = v3_from(prep->positions[prep->corner_vertex[poly->corner]]), sum = v3(0, 0, 0), before = v3(0, 0, 0);
+        if (poly->detail)
+            continue;
         balances[solid].open |= !poly->opaque || !poly->two_sided;
         grow_bounds(&prep->solids[solid], prep->positions[prep->corner_vertex[poly->corner]]);
         for (uint32_t k = 1; k < poly->corner_count; k++) {
@@ -151,6 +153,7 @@ gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number)
 {
     gno_context *context = scene->context;
     gnoi_prepared *prep = &scene->prepared;
+    unsigned char *is_detail; /* of source polygons */
     balance *balances;
     gno_status status = GNO_ERROR_MEMORY;
     prep->vertex_solid = gnoi_malloc(context, prep->vertex_capacity, sizeof *prep->vertex_solid);
@@ -159,15 +162,19 @@ gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number)
     if (!find_parts(context, prep))
         return GNO_ERROR_MEMORY;
     balances = gnoi_calloc(context, prep->solid_count, sizeof *balances);
+    is_detail = gnoi_calloc(context, scene->polygon_count, 1);
     prep->solids = gnoi_calloc(context, prep->solid_count, sizeof *prep->solids);
-    if (balances && prep->solids) {
+    if (balances && is_detail && prep->solids) {
+        for (size_t i = 0; i < prep->poly_count; i++)
+            is_detail[prep->polys[i].source] = (unsigned char)prep->polys[i].detail;
         for (size_t i = 0; i < prep->solid_count; i++)
             for (int k = 0; k < 3; k++) {
                 prep->solids[i].lower[k] = HUGE_VAL;
                 prep->solids[i].upper[k] = -HUGE_VAL;
             }
-        int good = add_source_edges(scene, vertex_number, balances) && add_prepared(scene, balances);
+        int good = add_source_edges(scene, vertex_number, is_detail, balances) && add_prepared(scene, balances);
         for (size_t i = 0; i < prep->solid_count; i++) {
+            balances[i].open |= !(prep->solids[i].lower[0] <= prep->solids[i].upper[0]); /* details alone */
             prep->solids[i].closed = !balances[i].open && balances[i].sum[0] == 0 && balances[i].sum[1] == 0;
             prep->solids[i].cap = GNOI_NONE;
             prep->solids[i].outwards = balances[i].volume > 0;
@@ -176,6 +183,7 @@ gno_status gnoi_find_solids(gno_scene *scene, const uint32_t *vertex_number)
             status = cap_open(scene, balances);
     }
     gnoi_free(context, balances, prep->solid_count, sizeof *balances);
+    gnoi_free(context, is_detail, scene->polygon_count, 1);
     return status;
 }
 
@@ -221,7 +229,7 @@ int gnoi_solid_outside(const gno_scene *scene, size_t solid, vec3 point)
     for (size_t i = 0; i < prep->poly_count + prep->cap_count; i++) {
         const gnoi_poly *poly = &prep->polys[i];
         int c = 0;
-        if (gnoi_solid_of(prep, poly) == solid)
+        if (!poly->detail && gnoi_solid_of(prep, poly) == solid)
             c = crossing(prep, poly, point, u, v, along);
         if (c == 2)
             return 0;

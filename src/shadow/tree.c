@@ -81,7 +81,7 @@ static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const un
         vec3 points[GNOI_FRAME_POINTS];
         gnoi_lbox box[6];
         int n;
-        if ((!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1) ||
+        if (poly->detail || (!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1) ||
             !is_part(part, gnoi_halved_side(scene, lamp, halved, poly)) ||
             (i >= prep->poly_count && gnoi_halved_side(scene, lamp, halved, poly) == 0))
             continue;

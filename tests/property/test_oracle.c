@@ -169,7 +169,7 @@ static int judge_scene(gno_scene *scene, const char *name, unsigned seed, const 
     assert_true(o && j.seen && j.engine);
     assert_int_equal(gno_scene_material(scene, 1, &first), GNO_OK);
     j.o = o;
-    j.constant = first.shading == GNO_SHADING_CONSTANT && strcmp(name, "blob") != 0 && strcmp(name, "glass") != 0 && strncmp(name, "panes", 5) != 0 && strncmp(name, "soft", 4) != 0;
+    j.constant = first.shading == GNO_SHADING_CONSTANT && strcmp(name, "blob") != 0 && strcmp(name, "glass") != 0 && strncmp(name, "panes", 5) != 0 && strncmp(name, "soft", 4) != 0 && strncmp(name, "marked", 6) != 0;
     for (size_t i = 0; i < PIXELS * 3; i++) j.engine[i] = NAN; /* every pixel has to be written */
     assert_int_equal(gno_render(scene, def, j.engine, NULL), GNO_OK);
     oracle_picture(o, RAYS, 1, j.seen);
@@ -243,6 +243,7 @@ static void test_room(void **state) { (void)state; judge_kind(SCENE_ROOM, 6); }
 static void test_glass(void **state) { (void)state; judge_kind(SCENE_GLASS, 8); }
 static void test_panes(void **state) { (void)state; judge_kind(SCENE_PANES, 8); }
 static void test_soft(void **state) { (void)state; judge_kind(SCENE_SOFT, 8); }
+static void test_marked(void **state) { (void)state; judge_kind(SCENE_MARKED, 8); }
 static void test_around(void **state) { (void)state; judge_kind(SCENE_AROUND, 6); }
 static void test_blob(void **state) { (void)state; judge_kind(SCENE_BLOB, 3); }
 static void test_lattice(void **state) { (void)state; judge_kind(SCENE_LATTICE, 8); }
@@ -255,6 +256,7 @@ static void test_rounded_details(void **state)
     (void)state;
     static const place rounded = {"-rounded", 1, {0, 0, 0}, 1e-6};
     judge_kind_at(SCENE_DETAILS, 4, &rounded);
+    judge_kind_at(SCENE_MARKED, 2, &rounded);
 }
 
 /* Nothing depends on the unit or the place, up to the tolerances, which follow the largest coordinate. */
@@ -445,6 +447,7 @@ int main(void)
         cmocka_unit_test(test_glass),
         cmocka_unit_test(test_panes),
         cmocka_unit_test(test_soft),
+        cmocka_unit_test(test_marked),
         cmocka_unit_test(test_around),
         cmocka_unit_test(test_blob),
         cmocka_unit_test(test_lattice),

@@ -210,6 +210,20 @@ static void measure(oracle *o)
     o->tolerance = COPLANAR * scale;
 }
 
+/* A detail is at least one above what it lies on, which may be a detail itself. */
+static int raise_detail(gno_scene *scene, face *a, size_t most)
+{
+    int least = 0, own = a->p.priority;
+    gno_polygon p = a->p;
+    for (size_t i = 0; i < most && p.detail_of >= 0; i++) {
+        if (gno_scene_polygon(scene, (size_t)p.detail_of, &p) != GNO_OK) return 0;
+        least++;
+        if (p.priority + least > own) own = p.priority + least;
+    }
+    a->p.priority = own;
+    return 1;
+}
+
 oracle *oracle_create(gno_scene *scene)
 {
     gno_scene_counts counts = gno_scene_count(scene);
@@ -234,6 +248,8 @@ oracle *oracle_create(gno_scene *scene)
         if (made == 0) goto fail;
         if (made > 0) o->face_count++;
     }
+    for (size_t i = 0; i < o->face_count; i++)
+        if (!raise_detail(scene, &o->faces[i], counts.polygons)) goto fail;
     for (size_t i = 0; i < o->face_count; i++)
         if (!smooth_normals(o, &o->faces[i])) goto fail;
     for (size_t i = 0; i < counts.lights; i++) {
@@ -358,7 +374,7 @@ static unsigned long passes(const oracle *o, const lamp *l, const face *receiver
     for (size_t i = 0; i < o->face_count; i++) {
         const face *a = &o->faces[i];
         double share;
-        if (a == receiver || (share = meet(a, point, to, far ? INFINITY : BEFORE_LAMP, at)) < 0 || lies_on(o, a, receiver) ||
+        if (a == receiver || a->p.detail_of >= 0 || (share = meet(a, point, to, far ? INFINITY : BEFORE_LAMP, at)) < 0 || lies_on(o, a, receiver) ||
             lies_on(o, receiver, a)) continue;
         for (int k = 0; k < 3; k++) {
             double t = a->m.transmission[k], d = share * length;

@@ -65,7 +65,7 @@ static void random_plane(maker *m, double u[3], double v[3])
 
 const char *scene_kind_name(scene_kind kind)
 {
-    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "solids", "blob", "panes", "soft"};
+    static const char *const names[SCENE_KINDS] = {"soup", "boxes", "holes", "stars", "details", "room", "glass", "around", "lattice", "torch", "solids", "blob", "panes", "soft", "marked"};
     return names[kind];
 }
 
@@ -380,6 +380,26 @@ static void panes(maker *m)
     soup(m, 5, 1.2, 0.9);
 }
 
+static void marked(maker *m)
+{
+    double u[3], v[3], centre[3] = {0, 0, 0}, at[3], c[12][3];
+    int wall_of_glass = pick(m, 3) == 0;
+    random_plane(m, u, v);
+    unsigned count = star(m, centre, u, v, 2.2, 2.8, 7, c);
+    int material = wall_of_glass ? pane_material(m) : any_material(m);
+    keep(m, add_polygon(m->scene, (const double(*)[3])c, count, material, 0));
+    for (int i = 0; i < 10; i++) {
+        double x = between(m, -1.6, 1.6), y = between(m, -1.6, 1.6);
+        int priority = pick(m, 3), on = pick(m, 2) ? 0 : pick(m, i + 1), pane = pick(m, 4) == 0;
+        for (int k = 0; k < 3; k++) at[k] = x * u[k] + y * v[k];
+        count = star(m, at, u, v, 0.3, 0.9, 3 + (unsigned)pick(m, 5), c);
+        material = pane ? pane_material(m) : any_material(m);
+        keep(m, add_polygon(m->scene, (const double(*)[3])c, count, material, priority));
+        keep(m, gno_scene_set_detail_of(m->scene, (size_t)i + 1, on) == GNO_OK);
+    }
+    soup(m, 6, 1.5, 0.6);
+}
+
 /* Rectangles and triangles with corners on whole numbers, mostly along the axes; equal planes and shared edges abound. */
 static void lattice(maker *m)
 {
@@ -476,7 +496,7 @@ static void add_light(maker *m, scene_kind kind, double share)
         l.falloff = GNO_FALLOFF_INVERSE_SQUARE;
         for (int k = 0; k < 3; k++) l.intensity[k] *= 10;
     }
-    if (kind == SCENE_SOFT || (kind == SCENE_PANES && pick(m, 2))) l.softness = between(m, 0.2, 3);
+    if (kind == SCENE_SOFT || (kind == SCENE_MARKED && pick(m, 4) == 0) || (kind == SCENE_PANES && pick(m, 2))) l.softness = between(m, 0.2, 3);
     keep(m, gno_scene_add_light(m->scene, NULL, &l, NULL) == GNO_OK);
 }
 
@@ -545,6 +565,7 @@ gno_scene *random_scene(gno_context *context, scene_kind kind, unsigned seed, in
     case SCENE_TORCH: floor_at(&m, -1.5, 4); soup(&m, 12, 1.2, 1.2); boxes(&m, 2, 1.5, -1.5); break;
     case SCENE_PANES: panes(&m); break;
     case SCENE_SOFT: floor_at(&m, -0.5, 4); boxes(&m, 3, 1.6, -0.5); soup(&m, 5, 1.2, 0.9); glass(&m); break;
+    case SCENE_MARKED: marked(&m); break;
     case SCENE_AROUND: soup(&m, 30, 1.5, 1.8); break;
     default: blob(&m); break;
     }
@@ -587,6 +608,7 @@ static int copy_polygon(gno_scene *to, const gno_polygon *p, double scale, const
     d.material = p->material;
     d.shading = p->shading;
     d.priority = p->priority;
+    d.detail_of = p->detail_of;
     return gno_scene_add_mesh(to, &d, NULL) == GNO_OK;
 }
 

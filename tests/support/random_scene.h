@@ -20,6 +20,7 @@ typedef enum scene_kind {
     SCENE_BLOB,    /* a closed smooth mesh on a plane, Gouraud or Phong */
     SCENE_PANES,   /* stacks of transparent polygons, lying on each other and through each other and solid things */
     SCENE_SOFT,    /* boxes, triangles and glass under lights whose shadows weaken with distance */
+    SCENE_MARKED,  /* details on a wall and on each other, marked as such, some of glass, some reaching beyond it */
     SCENE_KINDS
 } scene_kind;
 

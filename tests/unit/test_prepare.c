@@ -105,7 +105,7 @@ static void add_polygon(bed *b, const double *positions, const unsigned *sizes, 
 
 static const gnoi_prepared *prepare(bed *b, size_t degenerate, size_t non_planar)
 {
-    gno_scene_problems problems = {99, 99};
+    gno_scene_problems problems = {99, 99, 99};
     assert_int_equal(gno_scene_prepare(b->scene, 1, &problems), GNO_OK);
     assert_int_equal(problems.degenerate, degenerate);
     assert_int_equal(problems.non_planar, non_planar);

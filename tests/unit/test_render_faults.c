@@ -48,11 +48,18 @@ static gno_status fill(gno_scene *scene)
     mesh.ring_count = 3;
     mesh.ring_start = slab_rings;
     mesh.corner_vertex = slab_corners;
+    mesh.find_details = 1;
     mesh.shading = GNO_SHADING_GOURAUD;
     if (!status) status = gno_scene_add_mesh(scene, &mesh, NULL);
     glass.transmission[0] = glass.transmission[2] = 0.5;
     if (!status) status = gno_scene_add_material(scene, &glass, &mesh.material);
     mesh.transform[11] = 0.5;
+    if (!status) status = gno_scene_add_mesh(scene, &mesh, NULL);
+    mesh.polygon_count = mesh.ring_count = 1; /* a detail of the ground, marked; the others are looked for */
+    mesh.corner_count = 4;
+    mesh.transform[11] = 0;
+    mesh.transform[0] = mesh.transform[5] = 0.5;
+    mesh.detail_of = 5;
     if (!status) status = gno_scene_add_mesh(scene, &mesh, NULL);
     for (int i = 0; i < 4 && !status; i++) {
         gno_light light = gno_light_default();

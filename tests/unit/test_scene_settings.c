@@ -190,7 +190,7 @@ static void test_bad_settings(void **state)
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) expect_message("scene.yaml", rows[i][0], rows[i][1]);
     expect_message("flat.obj", "materials.a=3",
-                   "--set materials: unknown key, the known ones are image, camera, ambient, lights, shading, crease, up");
+                   "--set materials: unknown key, the known ones are image, camera, ambient, lights, shading, crease, up, details");
     expect_message("flat.obj", "up=w", "--set up: \"w\" is not one of x, y, z");
     expect_message("flat.obj", "lights[0].intensity=1", "--set lights[0].intensity: there is no list at the place of the index");
 }
