@@ -70,7 +70,7 @@ STATIC := $(BUILD)/libgnomon.a $(BUILD)/libgnomon-io.a
 SHARED := $(BUILD)/libgnomon.so $(BUILD)/libgnomon-io.so
 TOOL   := $(if $(CLI_SRC),$(BUILD)/gnomon)
 
-.PHONY: all demo demo-pictures test test-run check-asan asan-run bench install uninstall deps clean check-headers FORCE
+.PHONY: watertight all demo demo-pictures test test-run check-asan asan-run bench install uninstall deps clean check-headers FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -181,6 +181,11 @@ tests: $(TEST_BIN)
 test-run: all tests
 	@CC='$(CC)' BUILD='$(BUILD)' GNOMON='$(abspath $(BUILD)/gnomon)' \
 	 sh tests/run.sh $(BUILD)/logs $(TEST_BIN) $(TEST_SCRIPTS) tests/check-headers.sh
+
+# Closed bodies from outside and from inside: no background and no light through their edges.
+VIEWS ?= 10000
+watertight: $(BUILD)/tests/property/test_watertight
+	@GNOMON_VIEWS=$(VIEWS) $<
 
 check-headers: $(BUILD)/libgnomon.so $(BUILD)/libgnomon-io.so
 	@CC='$(CC)' BUILD='$(BUILD)' sh tests/check-headers.sh

@@ -93,6 +93,15 @@ static uint32_t append_piece(gnoi_lines *lines, uint32_t line, uint32_t before, 
     return link_piece(lines, line, before, slot, x0, x1);
 }
 
+/* Surfaces that part by so many tolerances within a pixel do not lie on each other, though they may be as near where they meet: the
+ * two sides of a sharp edge seen along it. */
+#define PARTING 16
+
+static double parts(const gnoi_depth *a, const gnoi_depth *b)
+{
+    return fabs(a->fx - b->fx) * GNOI_X_ONE + fabs(a->fy - b->fy);
+}
+
 /* Which of two surfaces is in front over [x0,x1): +1 a, -1 b, 0 they cross at *cut with a in front on the left when
  * *a_first. */
 static int in_front(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x0, int32_t x1, int32_t *cut, int *a_first)
@@ -104,6 +113,8 @@ static int in_front(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t 
     double t0 = ta0 < tb0 ? ta0 : tb0, t1 = ta1 < tb1 ? ta1 : tb1;
     int s0 = d0 > t0 ? 1 : d0 < -t0 ? -1 : 0, s1 = d1 > t1 ? 1 : d1 < -t1 ? -1 : 0;
     if (s0 == 0 && s1 == 0) {
+        if (d0 + d1 != 0 && parts(a, b) > PARTING * t0)
+            return d0 + d1 > 0 ? 1 : -1;
         if (a->priority != b->priority)
             return a->priority > b->priority ? 1 : -1;
         return a->index < b->index ? 1 : -1;

@@ -4,7 +4,8 @@
  * pieces -> coverage. Positions along a line are integers, 2^-16 pixel from the tile's left edge, so that pieces fit
  * together exactly and their lengths add up exactly.
  * Rules: the nearer surface is kept; where two cross inside their overlap the piece is cut there; where they lie on each
- * other (nearer to each other's plane than the tolerance over the whole overlap) the higher priority wins, then the lower polygon number.
+ * other (nearer to each other's plane than the tolerance over the whole overlap, and not merely meeting there) the higher priority
+ * wins, then the lower polygon number.
  * Invariants of a line: pieces ascend, do not overlap, have x0 < x1 and lie in [xa,xb); `uncovered` is what they
  * leave free; no piece is farther than `farthest`. A piece stays in its line for good, though it may shrink or change hands.
  */

@@ -2,9 +2,9 @@
 #include "shadow/pair.h"
 #include <stdlib.h>
 
-/* A candidate that reaches over an edge of the region by less than this share of the edge's length is ruled out: rounding of
- * corners that neighbours share comes to some 1e-7 of it. */
-#define PROBE_SLACK 1e-6
+/* A candidate is ruled out by an edge of the region when it stays outside of it by this share of the edge's length, far more than the
+ * rounding of single precision. What comes nearer is tested exactly: a sliver left lit would be a leak. */
+#define PROBE_SLACK -1e-6
 
 /* So many receivers wait for each other, while the box around them is no larger than so many times the newest one's. */
 #define REQUESTS 64

@@ -9,117 +9,23 @@
 
 #include <gnomon/gnomon.h>
 #include <math.h>
-#include <stdio.h>
-#include <string.h>
+#include "support/solids.h"
 
 #define WIDTH 96
 #define HEIGHT 72
 #define PI 3.14159265358979323846
 
-static uint32_t next_random(uint32_t *seed)
-{
-    *seed = *seed * 1664525u + 1013904223u;
-    return *seed >> 8;
-}
-
-static double uniform(uint32_t *seed, double a, double b) { return a + (b - a) * (double)next_random(seed) / 16777216.0; }
-
-/* ---- solids: positions and polygons, wound outwards ---------------------------------------------------------------- */
-
-#define MOST 4000
-typedef struct solid {
-    size_t vertices, polygons, corners;
-    double p[MOST][3];
-    unsigned ring[MOST + 1];
-    int corner[4 * MOST];
-} solid;
-
-static void add_polygon(solid *s, const int *v, int n)
-{
-    for (int i = 0; i < n; i++)
-        s->corner[s->corners++] = v[i];
-    s->ring[++s->polygons] = (unsigned)s->corners;
-}
-
-static int add_vertex(solid *s, double x, double y, double z)
-{
-    s->p[s->vertices][0] = x;
-    s->p[s->vertices][1] = y;
-    s->p[s->vertices][2] = z;
-    return (int)s->vertices++;
-}
-
-/* A prism over a ring of n points, counter-clockwise, from z = 0 to 1; lids as n-gons; open: without the lower one. */
-static void make_prism(solid *s, int n, double (*ring)[2], int open)
-{
-    int top[64], bottom[64];
-    for (int i = 0; i < n; i++) {
-        bottom[n - 1 - i] = add_vertex(s, ring[i][0], ring[i][1], 0);
-        top[i] = add_vertex(s, ring[i][0], ring[i][1], 1);
-    }
-    add_polygon(s, top, n);
-    if (!open)
-        add_polygon(s, bottom, n);
-    for (int i = 0; i < n; i++) {
-        int j = (i + 1) % n, side[4] = {2 * i, 2 * j, 2 * j + 1, 2 * i + 1};
-        add_polygon(s, side, 4);
-    }
-}
-
-static void make_star(solid *s, int tips, double inner, int open)
-{
-    double ring[64][2];
-    for (int i = 0; i < 2 * tips; i++) {
-        double r = i & 1 ? inner : 1, a = PI * i / tips + 0.1;
-        ring[i][0] = r * cos(a);
-        ring[i][1] = r * sin(a);
-    }
-    make_prism(s, 2 * tips, ring, open);
-}
-
-/* A torus of triangles, standing on z = 0, bumpy so that its contour is ragged. */
-static void make_torus(solid *s, int m, int n, double thick, double bump, uint32_t *seed)
-{
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j < n; j++) {
-            double a = 2 * PI * i / m, b = 2 * PI * j / n, r = thick * (1 + bump * uniform(seed, -1, 1));
-            add_vertex(s, (1 - thick + r * cos(b)) * cos(a), (1 - thick + r * cos(b)) * sin(a), thick + r * sin(b));
-        }
-    for (int i = 0; i < m; i++)
-        for (int j = 0; j < n; j++) {
-            int a = i * n + j, b = (i + 1) % m * n + j, c = (i + 1) % m * n + (j + 1) % n, d = i * n + (j + 1) % n;
-            int t0[3] = {a, b, c}, t1[3] = {a, c, d};
-            add_polygon(s, t0, 3);
-            add_polygon(s, t1, 3);
-        }
-}
-
-static void make_solid(solid *s, uint32_t *seed)
-{
-    double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
-    memset(s, 0, offsetof(solid, p));
-    s->ring[0] = 0;
-    switch (next_random(seed) % 6) {
-    case 0:
-    case 1: make_prism(s, 4, square, next_random(seed) & 1); break;
-    case 2:
-    case 3: make_star(s, 3 + (int)(next_random(seed) % 4), uniform(seed, 0.3, 0.7), next_random(seed) & 1); break;
-    case 4: make_torus(s, 12, 8, 0.35, 0, seed); break;
-    default: make_torus(s, 30, 16, 0.3, 0.3, seed); break;
-    }
-}
-
 /* ---- scenes -------------------------------------------------------------------------------------------------------- */
 
 static void place(gno_mesh_def *mesh, int how, uint32_t *seed)
 {
-    double a = uniform(seed, 0, 2 * PI), sx = uniform(seed, 0.3, 1.2), sy = uniform(seed, 0.3, 1.2), sz = uniform(seed, 0.3, 2), tilt = 0;
-    double x = uniform(seed, -3, 3), y = uniform(seed, -3, 3), z = 0;
+    double a = solid_uniform(seed, 0, 2 * PI), sx = solid_uniform(seed, 0.3, 1.2), sy = solid_uniform(seed, 0.3, 1.2), sz = solid_uniform(seed, 0.3, 2), tilt = 0;
+    double x = solid_uniform(seed, -3, 3), y = solid_uniform(seed, -3, 3), z = 0;
     if (how == 1) /* through the ground */
-        z = -uniform(seed, 0, 1);
+        z = -solid_uniform(seed, 0, 1);
     if (how == 2) { /* in the air, tilted */
-        z = uniform(seed, 1, 3);
-        tilt = uniform(seed, -1, 1);
+        z = solid_uniform(seed, 1, 3);
+        tilt = solid_uniform(seed, -1, 1);
     }
     if (how == 3) /* mirrored, so that it is wound inwards */
         sx = -sx;
@@ -152,12 +58,12 @@ static void add_ground(gno_scene *scene)
 static void add_lights(gno_scene *scene, uint32_t *seed)
 {
     gno_light light = gno_light_default();
-    light.type = (gno_light_type)(next_random(seed) % 3);
-    light.position[0] = uniform(seed, -6, 6);
-    light.position[1] = uniform(seed, -6, 6);
-    light.position[2] = uniform(seed, 5, 9);
-    light.direction[0] = light.type == GNO_LIGHT_SPOT ? -light.position[0] : uniform(seed, -1, 1);
-    light.direction[1] = light.type == GNO_LIGHT_SPOT ? -light.position[1] : uniform(seed, -1, 1);
+    light.type = (gno_light_type)(solid_random(seed) % 3);
+    light.position[0] = solid_uniform(seed, -6, 6);
+    light.position[1] = solid_uniform(seed, -6, 6);
+    light.position[2] = solid_uniform(seed, 5, 9);
+    light.direction[0] = light.type == GNO_LIGHT_SPOT ? -light.position[0] : solid_uniform(seed, -1, 1);
+    light.direction[1] = light.type == GNO_LIGHT_SPOT ? -light.position[1] : solid_uniform(seed, -1, 1);
     light.direction[2] = light.type == GNO_LIGHT_SPOT ? -light.position[2] : -1;
     light.angle = 50;
     assert_int_equal(gno_scene_add_light(scene, NULL, &light, NULL), GNO_OK);
@@ -176,26 +82,21 @@ static gno_scene *make_scene(gno_context *context, uint32_t seed, double transmi
         material.transmission[k] = transmission;
     assert_int_equal(gno_scene_add_material(scene, &material, &index), GNO_OK);
     add_ground(scene);
-    number = 1 + (int)(next_random(&seed) % 8);
+    number = 1 + (int)(solid_random(&seed) % 8);
     for (int i = 0; i < number; i++) {
-        gno_mesh_def mesh = gno_mesh_def_default();
-        make_solid(&s, &seed);
-        mesh.vertex_count = s.vertices;
-        mesh.positions = &s.p[0][0];
-        mesh.polygon_count = mesh.ring_count = s.polygons;
-        mesh.ring_start = s.ring;
-        mesh.corner_count = s.corners;
-        mesh.corner_vertex = s.corner;
+        gno_mesh_def mesh;
+        solid_make(&s, &seed, 1);
+        mesh = solid_mesh(&s);
         mesh.material = index;
-        place(&mesh, (int)(next_random(&seed) % 4), &seed);
+        place(&mesh, (int)(solid_random(&seed) % 4), &seed);
         assert_int_equal(gno_scene_add_mesh(scene, &mesh, NULL), GNO_OK);
     }
     add_lights(scene, &seed);
     add_lights(scene, &seed);
-    camera.eye[0] = uniform(&seed, -5, 5);
+    camera.eye[0] = solid_uniform(&seed, -5, 5);
     camera.eye[1] = -9;
-    camera.eye[2] = uniform(&seed, 4, 8);
-    if (next_random(&seed) % 3 == 0) {
+    camera.eye[2] = solid_uniform(&seed, 4, 8);
+    if (solid_random(&seed) % 3 == 0) {
         camera.type = GNO_CAMERA_ORTHOGRAPHIC;
         camera.height = 9;
         camera.eye[2] = 14;

@@ -78,7 +78,7 @@ static gno_context *new_context(void)
 /* Settings are "key=value" texts, NULL at the end. */
 static gno_scene *load_with(gno_context *context, const char *path, const char *const *texts)
 {
-    gno_setting settings[8];
+    gno_setting settings[8] = {{NULL, NULL}};
     char keys[8][128];
     size_t count = 0;
     gno_scene *scene = NULL;
