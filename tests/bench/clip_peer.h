@@ -1,4 +1,4 @@
-/* clip_peer.h -- the Clipper library (C++) behind two C calls, for clip_speed.c. */
+/* clip_peer.h -- Clipper 6 or Clipper2 (C++) behind a C call, for clip_speed.c. */
 #ifndef BENCH_CLIP_PEER_H
 #define BENCH_CLIP_PEER_H
 
@@ -7,6 +7,8 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+extern const char *const peer_name;
 
 /* Area of the difference or union of two shapes of simple counter-clockwise rings, one per polygon. Coordinates are multiplied by
  * `scale` and rounded to integers; only the clipping itself is timed: its seconds are added to *seconds. */

@@ -1,4 +1,4 @@
-/* clip_speed.c -- times of the clipper beside Clipper 6 and GEOS: a ground under box shadows, their union, tiny calls.
+/* clip_speed.c -- times of the clipper beside Clipper and GEOS: a ground under box shadows, their union, tiny calls.
  * Built by clip.sh. usage: clip_speed [RUNS]          Every time is the least of RUNS alternating runs, of the operation alone.
  * Exit status 1 when a bound is missed: at most Clipper's time, at most a third of GEOS's.
  */
@@ -137,7 +137,7 @@ static void measure_small(gno_clipper *clipper, int casters, int runs)
         least(&best, t / CASES);
         least(&peer, p / CASES);
     }
-    printf("one quad less %d: %.2f us, Clipper 6 %.2f us (areas differ by %.1e)\n", casters, 1e6 * best, 1e6 * peer, fabs(sum) / runs);
+    printf("one quad less %d: %.2f us, %s %.2f us (areas differ by %.1e)\n", casters, 1e6 * best, peer_name, 1e6 * peer, fabs(sum) / runs);
     for (int i = 0; i < CASES; i++) {
         shape_free(&a[i]);
         shape_free(&b[i]);
@@ -153,7 +153,7 @@ int main(int argc, char **argv)
     initGEOS(quiet, quiet);
     if (gno_context_create(NULL, &context) != GNO_OK || gno_clipper_create(context, &clipper) != GNO_OK)
         return 1;
-    printf("%-10s %7s %13s %13s %13s   %11s   area error\n", "", "shadows", "gnomon", "Clipper 6", "GEOS", "times faster");
+    printf("%-10s %7s %13s %13s %13s   %11s   area error\n", "", "shadows", "gnomon", peer_name, "GEOS", "times faster");
     for (size_t count = 1000; count <= 10000; count *= 10) {
         missed |= measure(clipper, count, GNO_CLIP_DIFFERENCE, runs);
         missed |= measure(clipper, count, GNO_CLIP_UNION, runs);

@@ -39,6 +39,11 @@ splits() {
     ./"$1" >out && printf '%s\n' '[0, 2) light 1 1 1' '[2, 5) light 0 0 0' '[5, 7) light 1 1 1' '[7, 10) light 0.2 0.9 0.2' | diff - out
 }
 
+clips() {
+    ./"$1" >out && printf '%s\n' 'polygon (0, 0) (8, 0) (8, 2) (4, 2) (4, 1) (1, 1) (1, 4) (4, 4) (4, 3) (8, 3) (8, 6) (0, 6)' \
+        '   hole (5, 4) (6, 5) (6, 4)' 'lit: 34.5 of 48' | diff - out
+}
+
 draws() { # program: a picture of the right size with light, shadow and background in it
     rm -f draw.ppm
     ./"$1" && [ "$(head -n 2 draw.ppm | tr '\n' ' ')" = 'P6 480 270 ' ] && [ "$(wc -c <draw.ppm)" -eq $((15 + 3 * 480 * 270)) ] &&
@@ -62,6 +67,8 @@ verdict 'draw.c is C89' c89 draw "$build/libgnomon.a"
 verdict 'draw.c draws' draws draw
 verdict 'split.c is C89' c89 split "$build/libgnomon.a"
 verdict 'split.c splits' splits split
+verdict 'clip.c is C89' c89 clip "$build/libgnomon.a"
+verdict 'clip.c clips' clips clip
 verdict 'files.c is C89' c89 files "$build/libgnomon-io.a" "$build/libgnomon.a" $io_libs -lOpenEXRCore
 verdict 'files.c loads and writes' loads
 if command -v "${CXX:-g++}" >/dev/null; then
@@ -69,6 +76,8 @@ if command -v "${CXX:-g++}" >/dev/null; then
     verdict 'draw.c draws the same from C++' same_picture
     verdict 'split.c is C++98' cxx98 split
     verdict 'split.c splits from C++' splits split-cxx
+    verdict 'clip.c is C++98' cxx98 clip
+    verdict 'clip.c clips from C++' clips clip-cxx
 else
     echo "SKIP examples in C++: no ${CXX:-g++}"
 fi
