@@ -18,6 +18,7 @@ int gnoi_piece_veils_add(gnoi_piece_veils *veils, gnoi_tile *tile, uint32_t slot
             gnoi_pass pass = {1, {1, 1, 1}, 0};
             if (area[y][x] > 0)
                 pass = gnoi_tile_pass(tile, slot, x * GNOI_X_ONE, (x + 1) * GNOI_X_ONE, tile->y0 + y + 0.5);
+            veil->own[y][x] = pass.own;
             for (int k = 0; k < 3; k++)
                 veil->left[k][y][x] = 1 - (float)area[y][x] * (1 - pass.through[k]);
         }
@@ -47,6 +48,8 @@ void gnoi_piece_veils_at(const gnoi_piece_veils *veils, const gnoi_tile *tile, c
     left[0] = left[1] = left[2] = 1;
     for (size_t i = 0; i < veils->count; i++) {
         const gnoi_piece_veil *veil = &veils->list[i];
+        for (int k = 0; k < 3 && receiver && receiver->poly == veil->poly; k++)
+            left[k] *= (double)veil->own[y][x];
         if (receiver && !lies_before(veil, receiver, tile->x0 + x + 0.5, tile->y0 + y + 0.5))
             continue;
         for (int k = 0; k < 3; k++)

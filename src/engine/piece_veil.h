@@ -18,6 +18,7 @@ typedef struct gnoi_piece_veil {
     const gnoi_poly *poly;
     gnoi_screen_plane nearness;
     float left[3][GNOI_TILE_H][GNOI_TILE_W];
+    float own[GNOI_TILE_H][GNOI_TILE_W]; /* weight of its own colour */
 } gnoi_piece_veil;
 
 typedef struct gnoi_piece_veils {

@@ -136,6 +136,15 @@ static gno_status render_tiles(gnoi_frame_job *frame, int threads, const gnoi_ba
     return status;
 }
 
+/* Whether two pictures lie on a surface alike. */
+static int is_one_place(const gno_texture *a, const gno_texture *b)
+{
+    return a->kind == GNO_TEXTURE_IMAGE && b->kind == GNO_TEXTURE_IMAGE && a->map == b->map &&
+           memcmp(a->origin, b->origin, sizeof a->origin) == 0 && memcmp(a->u, b->u, sizeof a->u) == 0 &&
+           memcmp(a->v, b->v, sizeof a->v) == 0 && memcmp(a->corners, b->corners, sizeof a->corners) == 0 &&
+           memcmp(a->scale, b->scale, sizeof a->scale) == 0;
+}
+
 /* The mean of a material's picture. */
 static void set_mean(const gno_scene *scene, const gno_material *m, gnoi_tone *tone)
 {
@@ -159,6 +168,9 @@ static gnoi_tone *make_tones(const gno_scene *scene)
         }
         tones[i].shininess = (float)m->shininess;
         tones[i].textured = m->texture.kind != GNO_TEXTURE_NONE;
+        tones[i].has_holes = gnoi_has_holes(scene, m);
+        tones[i].bumped = m->bump.kind != GNO_BUMP_NONE;
+        tones[i].one_place = is_one_place(&m->texture, &m->bump.texture);
         tones[i].mean[0] = tones[i].mean[1] = tones[i].mean[2] = 0;
         if (m->texture.kind == GNO_TEXTURE_IMAGE)
             set_mean(scene, m, &tones[i]);

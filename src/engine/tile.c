@@ -44,6 +44,7 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_free(context, tile->parts, tile->part_capacity, sizeof *tile->parts);
     gnoi_free(context, tile->intensities, tile->intensity_capacity, sizeof *tile->intensities);
     gnoi_tile_layers_free(tile);
+    gnoi_free(context, tile->texels, GNOI_TEXELS, sizeof *tile->texels);
     gnoi_free(context, tile->mappings, tile->mapping_capacity, sizeof *tile->mappings);
     gnoi_free(context, tile->lit, lamps, sizeof *tile->lit);
     gnoi_free(context, tile->lit_colour, lamps, sizeof *tile->lit_colour);
@@ -60,6 +61,7 @@ void gnoi_tile_start(gnoi_tile *tile, size_t index)
     tile->width = job->view.width - tile->x0 < GNOI_TILE_W ? job->view.width - tile->x0 : GNOI_TILE_W;
     tile->height = job->view.height - tile->y0 < GNOI_TILE_H ? job->view.height - tile->y0 : GNOI_TILE_H;
     tile->slot_count = tile->column_count = tile->intensity_count = tile->mapping_count = 0;
+    gnoi_tile_forget_texels(tile);
     gnoi_columns_reset(&tile->store);
     memset(tile->acc, 0, sizeof tile->acc);
     memset(tile->weight, 0, sizeof tile->weight);

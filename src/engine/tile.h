@@ -19,14 +19,15 @@
 #include "scan/stack.h"
 #include "shade/batch.h"
 #include "shade/interp.h"
-#include "shade/texture.h"
+#include "shade/relief.h"
 #include "shadow/cache.h"
 #include "shadow/column.h"
 
 /* A material in single precision, `ambient` times the scene's ambient light. */
 typedef struct gnoi_tone {
     float ambient[3], diffuse[3], specular[3], shininess;
-    int textured;
+    int textured, bumped, has_holes;
+    int one_place; /* the bump lies where the texture does */
     float mean[3]; /* of the texture, where it is a picture; else all zero */
 } gnoi_tone;
 
@@ -63,6 +64,13 @@ typedef struct gnoi_item {
     unsigned char see_through; /* not opaque: drawn after all that is */
 } gnoi_item;
 
+/* A texture with holes is asked for on every line of a pixel; what it was is kept here, by polygon and pixel. */
+#define GNOI_TEXELS 512 /* a power of two */
+typedef struct gnoi_texel {
+    uint32_t poly, pixel; /* GNOI_NONE: none */
+    float rgba[4];
+} gnoi_texel;
+
 /* A surface seen in the tile. */
 typedef struct gnoi_slot {
     gnoi_receiver receiver;
@@ -71,7 +79,7 @@ typedef struct gnoi_slot {
     gnoi_interp interp;
     uint32_t first_intensity; /* constant, gouraud: intensities in tile.intensities, GNOI_NONE until needed */
     uint32_t intensity_triangle; /* gouraud: of the interpolation, whose corners they are */
-    uint32_t mapping;         /* textured: in tile.mappings, GNOI_NONE until needed */
+    uint32_t mapping;         /* textured, bumped: the first of two in tile.mappings, of texture and bump; GNOI_NONE until needed */
 } gnoi_slot;
 
 /* Coverage of one surface, or of its lit part, along a pixel row: sums over pieces of length, and of length times the
@@ -165,6 +173,7 @@ typedef struct gnoi_tile {
     double (*intensities)[3];
     size_t mapping_count, mapping_capacity;
     gnoi_mapping *mappings;
+    gnoi_texel *texels;                    /* GNOI_TEXELS, once something has holes */
     float texel[4];                        /* of the pixel and surface sampled last, where it is textured */
     float even[3][GNOI_BATCH];             /* beside the batch, in textured pictures: factor that puts the texture's mean in the texel's place */
     float acc[3][GNOI_TILE_PIXELS];        /* sums over lines */
@@ -208,6 +217,12 @@ void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
  * than a row high, whose edges may be exactly level and so are not kept. */
 void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count);
 void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, double y1);
+
+/* tile_texture.c: the texture of the slot's material in a pixel of the tile (apron included), seen at (x,y), to tile->texel; and a
+ * unit normal turned by its bump. */
+void gnoi_tile_set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y);
+vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n);
+void gnoi_tile_forget_texels(gnoi_tile *tile);
 
 /* tile_stack.c: what a surface that is not opaque does to what lies behind it. */
 gnoi_pass gnoi_tile_pass(void *tile, uint32_t slot, int32_t x0, int32_t x1, double y);

@@ -188,8 +188,10 @@ static void set_point(gnoi_batch *b, int i, const gnoi_view *view, const gnoi_sc
     b->pz[i] = (float)p.z;
 }
 
-static void set_normal(gnoi_batch *b, int i, const gnoi_frame_job *job, gnoi_slot *slot, double x, double y)
+static void set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int column, double x, double y)
 {
+    const gnoi_frame_job *job = tile->job;
+    gnoi_batch *b = &tile->batch;
     vec3 g = viewer_normal(slot), n = g;
     if (slot->receiver.poly->shading == GNO_SHADING_PHONG) {
         const gnoi_screen_plane *f = slot->interp.normal;
@@ -198,6 +200,8 @@ static void set_normal(gnoi_batch *b, int i, const gnoi_frame_job *job, gnoi_slo
         /* Near unit length on the viewer's side; the batch makes it unit. */
         n = v3_scale(n, (v3_dot(n, g) < 0 ? -1 : 1) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
     }
+    if (job->tones[slot->receiver.poly->material].bumped)
+        n = gnoi_tile_bumped(tile, slot, row, column, x, y, v3_unit(n));
     b->nx[i] = (float)n.x;
     b->ny[i] = (float)n.y;
     b->nz[i] = (float)n.z;
@@ -215,24 +219,6 @@ static void set_material(gnoi_batch *b, int i, const gnoi_tone *m, float coverag
         b->rgb[k][i] = tint ? 0 : coverage * m->ambient[k];
     }
     b->shininess[i] = m->shininess;
-}
-
-/* The texture of the slot's material in a pixel, seen at (x,y), to tile->texel. */
-static void set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y)
-{
-    const gnoi_frame_job *job = tile->job;
-    gnoi_sight sight = {job->scene, &job->view, slot->receiver.poly, &slot->receiver.nearness, &slot->interp};
-    if (slot->mapping == GNOI_NONE) {
-        if (!gnoi_reserve(tile->lines.context, (void **)&tile->mappings, &tile->mapping_capacity, tile->mapping_count + 1,
-                          sizeof *tile->mappings)) {
-            tile->failed = 1;
-            return;
-        }
-        slot->mapping = (uint32_t)tile->mapping_count++;
-        memset(&tile->mappings[slot->mapping], 0, sizeof *tile->mappings);
-    }
-    gnoi_texture_at(&sight, &job->scene->materials[slot->receiver.poly->material].texture, &tile->mappings[slot->mapping],
-                    tile->x0 + column + 0.5, tile->y0 + row - 0.5, x, y, tile->texel);
 }
 
 static void apply_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
@@ -256,14 +242,14 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
     int i = b->count;
     if (tone->textured && !tint)
-        set_texel(tile, slot, row, column, x, y);
+        gnoi_tile_set_texel(tile, slot, row, column, x, y);
     if (is_precomputed(slot)) {
         static const float plain[3] = {1, 1, 1};
         sample_precomputed(tile, slot, row, column, x, y, cells, tint, tone->textured ? tile->texel : plain);
         return;
     }
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
-    set_normal(b, i, job, slot, x, y);
+    set_normal(tile, i, slot, row, column, x, y);
     set_material(b, i, tone, coverage, tint);
     if (job->textured)
         apply_texel(tile, i, tone);

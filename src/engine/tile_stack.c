@@ -6,14 +6,25 @@
 #include "engine/tile.h"
 #include <string.h>
 
+/* Where a texture has holes only the solid share is there: it alone keeps light back, and shows its colour. */
+static void open_holes(gnoi_tile *tile, gnoi_slot *slot, int32_t x0, int32_t x1, double y, gnoi_pass *pass)
+{
+    int row = (int)floor(y - tile->y0 + 1);
+    gnoi_tile_set_texel(tile, slot, row, x0 / GNOI_X_ONE, tile->x0 + 0.5 * ((double)x0 + x1) / GNOI_X_ONE, y);
+    pass->own = tile->texel[3];
+    for (int k = 0; k < 3; k++)
+        pass->through[k] = 1 - pass->own * (1 - pass->through[k]);
+}
+
 gnoi_pass gnoi_tile_pass(void *user, uint32_t slot, int32_t x0, int32_t x1, double y)
 {
-    const gnoi_tile *tile = user;
-    const double *t = tile->job->scene->materials[tile->slots[slot].receiver.poly->material].transmission;
+    gnoi_tile *tile = user;
+    uint32_t material = tile->slots[slot].receiver.poly->material;
+    const double *t = tile->job->scene->materials[material].transmission;
     gnoi_pass pass = {1, {(float)t[0], (float)t[1], (float)t[2]}, 0};
-    (void)x0;
-    (void)x1;
-    (void)y;
+    pass.varies = tile->job->tones[material].has_holes;
+    if (pass.varies && x0 < x1)
+        open_holes(tile, &tile->slots[slot], x0, x1, y, &pass);
     return pass;
 }
 

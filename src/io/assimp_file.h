@@ -9,6 +9,7 @@
 #define GNOI_IO_ASSIMP_FILE_H
 
 #include "mesh_util.h"
+#include "texture_file.h"
 #include <assimp/scene.h>
 
 typedef struct gnoi_assimp {
@@ -22,7 +23,7 @@ typedef struct gnoi_assimp {
     int is_geometry;    /* PLY, STL, OFF: materials are made up by assimp */
     int is_stl;         /* normals are those of the triangles */
     int *material_index; /* scene material of each of the file's, -1 not there yet */
-    size_t textured_count;
+    gnoi_textures textures;
 } gnoi_assimp;
 
 /* Rows of a 3x4 matrix, as gno_mesh_def has it. */

@@ -8,6 +8,8 @@
  * n = 2/r^4 - 2, kept within [1,1000], for the roughness r: rough surfaces have no highlight, smooth ones a small strong one.
  * Transmission is 1 - opacity, where the material's alpha mode is BLEND.
  * Specular-glossiness materials: kd, ka, ks as for the classical ones, n of r = 1 - glossiness.
+ * Pictures: base colour (or diffuse colour) and normals, on the first set of texture coordinates, also from within the file. Their alpha
+ * makes holes where the material's alpha mode is BLEND, holes cut at its limit with MASK, none with OPAQUE.
  * All surfaces are two-sided, whatever the file says: a shadow through a wall seen from outside would surprise more.
  */
 #include "assimp_file.h"
@@ -15,6 +17,7 @@
 #include <assimp/GltfMaterial.h>
 #include <assimp/material.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static double within(double x, double lower, double upper)
@@ -41,20 +44,24 @@ static int get_colour(const struct aiMaterial *from, const char *key, unsigned t
     return 1;
 }
 
-static int has_texture(const struct aiMaterial *from)
-{
-    static const enum aiTextureType types[] = {aiTextureType_DIFFUSE, aiTextureType_BASE_COLOR, aiTextureType_NORMALS,
-                                               aiTextureType_HEIGHT};
-    for (size_t i = 0; i < sizeof types / sizeof types[0]; i++)
-        if (aiGetMaterialTextureCount(from, types[i]) > 0) return 1;
-    return 0;
-}
-
 static int blends(const struct aiMaterial *from)
 {
     struct aiString mode;
     if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) != aiReturn_SUCCESS) return 0;
     return strcmp(mode.data, "BLEND") == 0;
+}
+
+static gnoi_alpha_use alpha_use(const struct aiMaterial *from, int is_gltf, double *limit)
+{
+    struct aiString mode;
+    *limit = 0.5;
+    if (!is_gltf) return GNOI_ALPHA_KEEP;
+    if (aiGetMaterialString(from, AI_MATKEY_GLTF_ALPHAMODE, &mode) != aiReturn_SUCCESS) return GNOI_ALPHA_DROP;
+    if (strcmp(mode.data, "MASK") == 0) {
+        get_number(from, AI_MATKEY_GLTF_ALPHACUTOFF, limit);
+        return GNOI_ALPHA_CUT;
+    }
+    return strcmp(mode.data, "BLEND") == 0 ? GNOI_ALPHA_KEEP : GNOI_ALPHA_DROP;
 }
 
 static double shininess_of_roughness(double roughness)
@@ -94,6 +101,82 @@ static gno_material convert(const struct aiMaterial *from, int is_gltf)
     return to;
 }
 
+/* ---- pictures --------------------------------------------------------------------------------------------------------------- */
+
+static gno_wrap wrap_of(enum aiTextureMapMode mode)
+{
+    switch (mode) {
+    case aiTextureMapMode_Clamp: return GNO_WRAP_CLAMP;
+    case aiTextureMapMode_Mirror: return GNO_WRAP_MIRROR;
+    case aiTextureMapMode_Decal: return GNO_WRAP_NONE;
+    default: return GNO_WRAP_REPEAT;
+    }
+}
+
+/* A picture within the file, named "*3" by its number or by its own name; NULL: it is a file of its own. */
+static const struct aiTexture *find_embedded(const gnoi_assimp *a, const char *name)
+{
+    const struct aiScene *file = a->file;
+    if (name[0] == '*') {
+        unsigned long number = strtoul(name + 1, NULL, 10);
+        return number < file->mNumTextures ? file->mTextures[number] : NULL;
+    }
+    for (unsigned i = 0; i < file->mNumTextures; i++)
+        if (file->mTextures[i]->mFilename.length > 0 && strcmp(file->mTextures[i]->mFilename.data, name) == 0) return file->mTextures[i];
+    return NULL;
+}
+
+/* texture->kind stays none where the material has no such picture, or one that cannot be read: a warning. */
+static gno_status get_picture(gnoi_assimp *a, const struct aiMaterial *from, enum aiTextureType type, gnoi_texture_request *request,
+                              gno_texture *texture)
+{
+    char reason[GNOI_TEXTURE_REASON];
+    struct aiString path;
+    enum aiTextureMapMode modes[2] = {aiTextureMapMode_Wrap, aiTextureMapMode_Wrap};
+    const struct aiTexture *embedded;
+    unsigned channel = 0;
+    int image;
+    if (aiGetMaterialTextureCount(from, type) == 0 ||
+        aiGetMaterialTexture(from, type, 0, &path, NULL, &channel, NULL, NULL, modes, NULL) != aiReturn_SUCCESS)
+        return GNO_OK;
+    embedded = find_embedded(a, path.data);
+    request->beside = a->path;
+    request->name = path.data;
+    if (embedded && embedded->mHeight == 0) {
+        request->data = embedded->pcData;
+        request->data_size = embedded->mWidth;
+    }
+    if (channel != 0) {
+        gnoi_mesh_warn(a->context, a->path, 0, "texture %.200s lies on a second set of texture coordinates: drawn without it", path.data);
+        return GNO_OK;
+    }
+    gno_status status = gnoi_textures_get(&a->textures, request, &image, reason);
+    if (status != GNO_OK) return status;
+    if (reason[0]) gnoi_mesh_warn(a->context, a->path, 0, "%s: drawn without it", reason);
+    if (image < 0) return GNO_OK;
+    texture->kind = GNO_TEXTURE_IMAGE;
+    texture->image = image;
+    texture->wrap = wrap_of(modes[0]);
+    return GNO_OK;
+}
+
+static gno_status set_pictures(gnoi_assimp *a, const struct aiMaterial *from, gno_material *to)
+{
+    gnoi_texture_request colour, relief;
+    memset(&colour, 0, sizeof colour);
+    memset(&relief, 0, sizeof relief);
+    colour.is_colour = 1;
+    colour.alpha = alpha_use(from, a->is_gltf, &colour.limit);
+    gno_status status = get_picture(a, from, aiTextureType_BASE_COLOR, &colour, &to->texture);
+    if (status == GNO_OK && to->texture.kind == GNO_TEXTURE_NONE) status = get_picture(a, from, aiTextureType_DIFFUSE, &colour, &to->texture);
+    relief.alpha = GNOI_ALPHA_DROP;
+    if (status == GNO_OK) status = get_picture(a, from, aiTextureType_NORMALS, &relief, &to->bump.texture);
+    if (status != GNO_OK || to->bump.texture.kind == GNO_TEXTURE_NONE) return status;
+    to->bump.kind = GNO_BUMP_NORMAL;
+    get_number(from, AI_MATKEY_GLTF_TEXTURE_SCALE(aiTextureType_NORMALS, 0), &to->bump.amount);
+    return GNO_OK;
+}
+
 /* assimp makes up a material of this name where the file has none. */
 static int is_made_up(const struct aiMaterial *from)
 {
@@ -110,6 +193,8 @@ int gnoi_assimp_material(gnoi_assimp *a, unsigned number, gno_status *status)
     if (is_made_up(from)) return 0;
     gno_material material = convert(from, a->is_gltf);
     struct aiString name;
+    *status = set_pictures(a, from, &material);
+    if (*status != GNO_OK) return -1;
     *status = gno_scene_add_material(a->scene, &material, &a->material_index[number]);
     if (*status == GNO_OK && aiGetMaterialString(from, AI_MATKEY_NAME, &name) == aiReturn_SUCCESS)
         *status = gno_scene_set_material_name(a->scene, a->material_index[number], name.data);
@@ -117,6 +202,5 @@ int gnoi_assimp_material(gnoi_assimp *a, unsigned number, gno_status *status)
         *status = gnoi_mesh_blame(a->scene, a->path, *status);
         return -1;
     }
-    if (has_texture(from)) a->textured_count++;
     return a->material_index[number];
 }

@@ -296,6 +296,7 @@ static const struct aiScene *import(const char *path)
 static gno_status add_file(gnoi_assimp *a)
 {
     size_t count = a->file->mNumMaterials;
+    a->textures.scene = a->scene;
     a->material_index = get(a->context, count, sizeof *a->material_index);
     if (!a->material_index) return gnoi_mesh_no_memory(a->context, a->path);
     for (size_t i = 0; i < count; i++) a->material_index[i] = -1;
@@ -305,9 +306,7 @@ static gno_status add_file(gnoi_assimp *a)
     if (status == GNO_OK && a->options->take_camera) status = gnoi_assimp_camera(a);
     if (status == GNO_OK && a->options->take_lights) status = gnoi_assimp_lights(a);
     give_back(a->context, a->material_index, count, sizeof *a->material_index);
-    if (status == GNO_OK && a->textured_count > 0)
-        gnoi_mesh_warn(a->context, a->path, 0, "textures of %zu materials are not drawn in this version: plain colours are used",
-                       a->textured_count);
+    gnoi_textures_free(&a->textures);
     return status;
 }
 

@@ -11,7 +11,7 @@ static const char *const details_names[] = {"none", "coplanar", NULL};
 static const char *const weighting_names[] = {"area", "angle", "equal", NULL}; /* by gno_weighting */
 
 enum {
-    MESH, POLYGON, SPHERE, TERRAIN, NAME, MATERIAL, SHADING, CREASE, NORMALS, WEIGHTING, TRANSFORM, HOLES, DETAIL_OF, PRIORITY,
+    MESH, POLYGON, SPHERE, TERRAIN, NAME, MATERIAL, SHADING, CREASE, NORMALS, WEIGHTING, TRANSFORM, HOLES, UV, DETAIL_OF, PRIORITY,
     DETAILS,
     FIELDS
 };
@@ -34,6 +34,7 @@ static const gnoi_field fields[FIELDS] = {
     [WEIGHTING] = {.key = "weighting", .kind = GNOI_FIELD_CHOICE, AT(weighting), .choices = weighting_names},
     [TRANSFORM] = {.key = "transform", .kind = GNOI_FIELD_NODE},
     [HOLES] = {.key = "holes", .kind = GNOI_FIELD_NODE},
+    [UV] = {.key = "uv", .kind = GNOI_FIELD_NODE},
     [DETAIL_OF] = {.key = "detail_of", .kind = GNOI_FIELD_TEXT, AT(detail_of)},
     [DETAILS] = {.key = "details", .kind = GNOI_FIELD_CHOICE, AT(find_details), .choices = details_names},
     [PRIORITY] = {.key = "priority", .kind = GNOI_FIELD_INTEGER, AT(priority), .low = LEAST_PRIORITY, .high = MOST_PRIORITY},
@@ -59,6 +60,7 @@ static gno_status check_kind(const gnoi_yaml *yaml, const gnoi_yaml_node *node, 
     if (seen[HOLES] && kind != POLYGON) {
         return gnoi_yaml_fail(yaml, seen[HOLES], GNO_ERROR_INPUT, "has no meaning for %s", articles[kind]);
     }
+    if (seen[UV] && kind != POLYGON) return gnoi_yaml_fail(yaml, seen[UV], GNO_ERROR_INPUT, "has no meaning for %s", articles[kind]);
     for (int i = 0; i < 4 && kind != MESH; i++) {
         const gnoi_yaml_node *given = seen[mesh_only[i]];
         int averaged = kind == TERRAIN && mesh_only[i] != NORMALS && mesh_only[i] != DETAILS; /* its normals always are */
@@ -92,6 +94,7 @@ static gno_status read_entry(gnoi_scene_reader *reader, const gnoi_yaml_node *no
     entry->mesh_node = seen[MESH];
     entry->polygon = seen[POLYGON];
     entry->holes = seen[HOLES];
+    entry->uv = seen[UV];
     entry->sphere = seen[SPHERE];
     entry->terrain = seen[TERRAIN];
     entry->detail_node = seen[DETAIL_OF];

@@ -63,6 +63,20 @@ static gno_status fill_polygon(const gnoi_yaml *yaml, const gnoi_object_entry *e
     return status;
 }
 
+/* One pair for each corner, the polygon's and then its holes'. */
+static gno_status read_uv(const gnoi_yaml *yaml, const gnoi_yaml_node *node, size_t corners, double *texcoords)
+{
+    gno_status status = gnoi_need_list(yaml, node);
+    if (status == GNO_OK && node->count != corners) {
+        return gnoi_yaml_fail(yaml, node, GNO_ERROR_INPUT, "must have %lu pairs, one for each corner, has %lu", (unsigned long)corners,
+                              (unsigned long)node->count);
+    }
+    for (const gnoi_yaml_node *pair = status == GNO_OK ? node->first : NULL; pair && status == GNO_OK; pair = pair->next, texcoords += 2) {
+        status = gnoi_read_pair(yaml, pair, texcoords);
+    }
+    return status;
+}
+
 static gno_status add_polygon(gnoi_scene_reader *reader, const gnoi_object_entry *entry)
 {
     const gnoi_yaml *yaml = reader->yaml;
@@ -76,13 +90,15 @@ static gno_status add_polygon(gnoi_scene_reader *reader, const gnoi_object_entry
         }
     }
     if (status != GNO_OK) return status;
-    /* One block for the three arrays, the strictest alignment first; the counts are far from overflow, being nodes of a tree. */
-    size_t size = corners * (3 * sizeof(double) + sizeof(int)) + (rings + 1) * sizeof(unsigned);
+    /* One block for the four arrays, the strictest alignment first; the counts are far from overflow, being nodes of a tree. */
+    size_t size = corners * (5 * sizeof(double) + sizeof(int)) + (rings + 1) * sizeof(unsigned);
     double *positions = gno_context_realloc(reader->context, NULL, 0, size);
     if (!positions) return no_memory(reader);
-    int *corner_vertex = (int *)(void *)(positions + 3 * corners);
+    double *texcoords = positions + 3 * corners;
+    int *corner_vertex = (int *)(void *)(positions + 5 * corners);
     unsigned *ring_start = (unsigned *)(void *)(corner_vertex + corners);
     status = fill_polygon(yaml, entry, positions, ring_start, corner_vertex);
+    if (status == GNO_OK && entry->uv) status = read_uv(yaml, entry->uv, corners, texcoords);
     if (status == GNO_OK) {
         const unsigned polygon_start[2] = {0, (unsigned)rings};
         gno_mesh_def def = def_for(entry);
@@ -93,6 +109,11 @@ static gno_status add_polygon(gnoi_scene_reader *reader, const gnoi_object_entry
         def.ring_count = rings;
         def.ring_start = ring_start;
         def.corner_vertex = corner_vertex;
+        if (entry->uv) {
+            def.texcoord_count = corners;
+            def.texcoords = texcoords;
+            def.corner_texcoord = corner_vertex;
+        }
         status = gnoi_wrap(yaml, entry->node, gno_scene_add_mesh(reader->scene, &def, NULL));
     }
     gno_context_realloc(reader->context, positions, size, 0);

@@ -37,15 +37,14 @@ static const gnoi_field fields[BUMP_FIELDS] = {
     [KIND] = {.key = "kind", .kind = GNOI_FIELD_CHOICE, .offset = offsetof(texture_entry, kind), .choices = kinds},
 };
 
-/* Reads a list of `count` numbers. */
-static gno_status read_list(const gnoi_yaml *yaml, const gnoi_yaml_node *node, unsigned count, double *numbers)
+gno_status gnoi_read_pair(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double pair[2])
 {
     gno_status status = gnoi_need_list(yaml, node);
-    if (status == GNO_OK && node->count != count) {
-        return gnoi_yaml_fail(yaml, node, GNO_ERROR_INPUT, "must have %u numbers, has %lu", count, (unsigned long)node->count);
+    if (status == GNO_OK && node->count != 2) {
+        return gnoi_yaml_fail(yaml, node, GNO_ERROR_INPUT, "must have 2 numbers, has %lu", (unsigned long)node->count);
     }
     for (const gnoi_yaml_node *n = status == GNO_OK ? node->first : NULL; n && status == GNO_OK; n = n->next) {
-        status = gnoi_read_number(yaml, n, numbers++);
+        status = gnoi_read_number(yaml, n, pair++);
     }
     return status;
 }
@@ -54,7 +53,7 @@ static gno_status read_list(const gnoi_yaml *yaml, const gnoi_yaml_node *node, u
 gno_status gnoi_read_scale(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double scale[2])
 {
     int is_list = node->kind == GNOI_YAML_SEQUENCE;
-    gno_status status = is_list ? read_list(yaml, node, 2, scale) : gnoi_read_number(yaml, node, &scale[0]);
+    gno_status status = is_list ? gnoi_read_pair(yaml, node, scale) : gnoi_read_number(yaml, node, &scale[0]);
     if (status != GNO_OK) return status;
     if (!is_list) scale[1] = scale[0];
     for (int i = 0; i < 2; i++) {
@@ -72,7 +71,7 @@ static gno_status read_corners(const gnoi_yaml *yaml, const gnoi_yaml_node *node
         return gnoi_yaml_fail(yaml, node, GNO_ERROR_INPUT, "must have 2 corners, has %lu", (unsigned long)node->count);
     }
     for (int i = 0; i < 2 && status == GNO_OK; i++) {
-        status = read_list(yaml, i == 0 ? node->first : node->first->next, 2, corners[i]);
+        status = gnoi_read_pair(yaml, i == 0 ? node->first : node->first->next, corners[i]);
     }
     if (status == GNO_OK && (corners[0][0] == corners[1][0] || corners[0][1] == corners[1][1])) {
         return gnoi_yaml_fail(yaml, node, GNO_ERROR_INPUT, "the corners span no area");

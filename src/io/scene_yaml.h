@@ -43,7 +43,7 @@ typedef struct gnoi_scene_reader {
 /* One entry of `objects`, checked. */
 typedef struct gnoi_object_entry {
     const gnoi_yaml_node *node;
-    const gnoi_yaml_node *polygon, *holes, *sphere, *terrain, *mesh_node; /* one kind of object is not NULL */
+    const gnoi_yaml_node *polygon, *holes, *uv, *sphere, *terrain, *mesh_node; /* one kind of object is not NULL */
     const gnoi_yaml_node *detail_node;                          /* of detail_of, or NULL */
     const char *mesh, *name, *material_name, *detail_of;
     int material; /* scene index, -1: none named */
@@ -77,6 +77,7 @@ gno_status gnoi_read_transform(const gnoi_yaml *yaml, const gnoi_yaml_node *node
 /* `texture` and `bump` over what the structures hold; a bump lies as the texture does where it does not say otherwise. */
 gno_status gnoi_read_texture(gnoi_scene_reader *reader, const gnoi_yaml_node *node, gno_texture *texture);
 gno_status gnoi_read_bump(gnoi_scene_reader *reader, const gnoi_yaml_node *node, const gno_texture *texture, gno_bump *bump);
+gno_status gnoi_read_pair(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double pair[2]);
 gno_status gnoi_read_scale(const gnoi_yaml *yaml, const gnoi_yaml_node *node, double scale[2]);
 
 /* Adds the polygons of one object, its priority settled. */

@@ -131,18 +131,13 @@ static void round_coordinates(const gnoi_place *place, vec3 p, double near, doub
     st[1] = place->map == GNO_MAP_CYLINDRICAL ? z : atan2(sqrt(x * x + y * y), z) * (180 / PI);
 }
 
-gnoi_pattern gnoi_pattern_round(const gnoi_place *place, const gnoi_view *view, const gnoi_screen_plane *nearness, double x, double y)
+gnoi_pattern gnoi_pattern_corners(const gnoi_place *place, vec3 middle, const vec3 corner[4], double reach, double x, double y)
 {
-    /* Corners that the plane does not reach before the eye are drawn towards the middle. */
-    double z = gnoi_plane_at(nearness, x, y), reach = 0.5, slope = fabs(nearness->fx) + fabs(nearness->fy), st[4][2], middle[2];
+    double st[4][2], at_middle[2];
     gnoi_pattern p = {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}};
-    if (!view->orthographic && slope * reach > 0.9 * z)
-        reach = 0.9 * z / slope;
-    round_coordinates(place, gnoi_view_point(view, x, y, z), 180, middle);
-    for (int i = 0; i < 4; i++) {
-        double cx = x + (i == 1 || i == 2 ? reach : -reach), cy = y + (i >= 2 ? reach : -reach);
-        round_coordinates(place, gnoi_view_point(view, cx, cy, gnoi_plane_at(nearness, cx, cy)), middle[0], st[i]);
-    }
+    round_coordinates(place, middle, 180, at_middle);
+    for (int i = 0; i < 4; i++)
+        round_coordinates(place, corner[i], at_middle[0], st[i]);
     for (int k = 0; k < 2; k++) {
         gnoi_screen_plane *f = k == 0 ? &p.s : &p.t;
         double gain = place->gain[k], mean = 0.25 * (st[0][k] + st[1][k] + st[2][k] + st[3][k]);
@@ -151,4 +146,18 @@ gnoi_pattern gnoi_pattern_round(const gnoi_place *place, const gnoi_view *view, 
         f->f0 = gain * mean + place->shift[k] - f->fx * x - f->fy * y;
     }
     return p;
+}
+
+gnoi_pattern gnoi_pattern_round(const gnoi_place *place, const gnoi_view *view, const gnoi_screen_plane *nearness, double x, double y)
+{
+    /* Corners that the plane does not reach before the eye are drawn towards the middle. */
+    double z = gnoi_plane_at(nearness, x, y), reach = 0.5, slope = fabs(nearness->fx) + fabs(nearness->fy);
+    vec3 corner[4];
+    if (!view->orthographic && slope * reach > 0.9 * z)
+        reach = 0.9 * z / slope;
+    for (int i = 0; i < 4; i++) {
+        double cx = x + (i == 1 || i == 2 ? reach : -reach), cy = y + (i >= 2 ? reach : -reach);
+        corner[i] = gnoi_view_point(view, cx, cy, gnoi_plane_at(nearness, cx, cy));
+    }
+    return gnoi_pattern_corners(place, gnoi_view_point(view, x, y, z), corner, reach, x, y);
 }

@@ -37,7 +37,11 @@ gnoi_pattern gnoi_pattern_planar(const gnoi_place *place, const gnoi_view *view,
 /* The pattern on a triangle: weight[i] are proportional to its corners' shares, coordinate[i] their texture coordinates. */
 gnoi_pattern gnoi_pattern_uv(const gnoi_place *place, const gnoi_screen_plane weight[3], const double *const coordinate[3]);
 
-/* Cylindrical, spherical: linear through the corners of the pixel-sized square around picture point (x,y). */
+/* Cylindrical, spherical: linear through four points, those seen `reach` left and above, right and above, right and below, left and
+ * below picture point (x,y), where `middle` is seen. */
+gnoi_pattern gnoi_pattern_corners(const gnoi_place *place, vec3 middle, const vec3 corner[4], double reach, double x, double y);
+
+/* The same: linear through the corners of the pixel-sized square around picture point (x,y). */
 gnoi_pattern gnoi_pattern_round(const gnoi_place *place, const gnoi_view *view, const gnoi_screen_plane *nearness, double x, double y);
 
 #endif

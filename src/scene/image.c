@@ -19,6 +19,7 @@ void gnoi_image_free(gno_context *context, gnoi_image *image)
         size_t cells = (size_t)level->width * (size_t)level->height;
         gnoi_free(context, level->mean, cells, sizeof *level->mean);
         gnoi_free(context, level->spread, cells, sizeof *level->spread);
+        gnoi_free(context, level->height_of, cells, sizeof *level->height_of);
     }
     memset(image, 0, sizeof *image);
 }
@@ -141,5 +142,34 @@ gno_status gnoi_image_make(gno_context *context, const gno_pixels *pixels, gnoi_
         for (int y = 0; y < image->level[l].height; y++)
             for (int x = 0; x < image->level[l].width; x++)
                 make_cell(image, l, x, y);
+    return GNO_OK;
+}
+
+gno_status gnoi_image_make_heights(gno_context *context, gnoi_image *image)
+{
+    float *heights[GNOI_IMAGE_LEVELS];
+    int count = 0;
+    if (image->level[0].height_of)
+        return GNO_OK;
+    for (; count < image->level_count; count++) {
+        const gnoi_image_level *level = &image->level[count];
+        heights[count] = gnoi_malloc(context, (size_t)level->width * (size_t)level->height, sizeof *heights[count]);
+        if (!heights[count])
+            break;
+    }
+    for (int l = 0; l < count && count < image->level_count; l++)
+        gnoi_free(context, heights[l], (size_t)image->level[l].width * (size_t)image->level[l].height, sizeof *heights[l]);
+    if (count < image->level_count)
+        return GNO_ERROR_MEMORY;
+    for (int l = 0; l < count; l++) {
+        gnoi_image_level *level = &image->level[l];
+        level->height_of = heights[l];
+        for (int y = 0; y < level->height; y++)
+            for (int x = 0; x < level->width; x++) {
+                float v[4];
+                gnoi_image_value(image, l, x, y, v);
+                level->height_of[(size_t)y * (size_t)level->width + (size_t)x] = (v[0] + v[1] + v[2]) / 3;
+            }
+    }
     return GNO_OK;
 }

@@ -17,6 +17,7 @@ typedef struct gnoi_image_level {
     int width, height; /* cells */
     float (*mean)[4];  /* NULL on level 0 of a picture of bytes */
     float *spread;     /* NULL on level 0, where it is zero */
+    float *height_of;  /* means of red, green and blue; NULL until gnoi_image_make_heights */
 } gnoi_image_level;
 
 typedef struct gnoi_image {
@@ -30,6 +31,8 @@ typedef struct gnoi_image {
 
 /* Returns MEMORY with everything freed. The pixels have been checked. */
 gno_status gnoi_image_make(gno_context *context, const gno_pixels *pixels, gnoi_image *image);
+/* Adds heights for bumps to every level, if they are not there yet. Returns MEMORY with the image as it was. */
+gno_status gnoi_image_make_heights(gno_context *context, gnoi_image *image);
 void gnoi_image_free(gno_context *context, gnoi_image *image);
 
 /* One value; row and column in range. */

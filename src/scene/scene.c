@@ -186,6 +186,10 @@ gno_status gno_scene_add_material(gno_scene *scene, const gno_material *material
         return gnoi_fail(context, GNO_ERROR_MEMORY, "material: out of memory");
     }
     scene->materials = array;
+    if (material->bump.kind == GNO_BUMP_HEIGHT && material->bump.texture.kind == GNO_TEXTURE_IMAGE &&
+        gnoi_image_make_heights(context, &scene->images[material->bump.texture.image]) != GNO_OK) {
+        return gnoi_fail(context, GNO_ERROR_MEMORY, "material: out of memory");
+    }
     if (index) {
         *index = (int)scene->material_count;
     }

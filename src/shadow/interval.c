@@ -1,4 +1,5 @@
 /* interval.c -- where a sample line meets the shadow polygons of a column, and the dark outside of a spot's cone: see column.h. */
+#include "shadow/holes.h"
 #include "shadow/pair.h"
 
 /* Share of the nearness at a line's other end below which a plane is taken to be at its horizon. */
@@ -100,12 +101,46 @@ static int add_cone_intervals(const gnoi_view *view, const gnoi_lamp *lamp, cons
     return 1;
 }
 
-/* Where line y crosses the caster between xa and xb, in pairs (even-odd filling). */
-static int caster_intervals(const gno_scene *scene, const gnoi_caster *c, double y, double xa, double xb, gnoi_columns *columns)
+/* One receiver under one lamp. */
+typedef struct gnoi_shade {
+    const gno_scene *scene;
+    const gnoi_view *view;
+    const gnoi_lamp *lamp;
+    const gnoi_receiver *receiver;
+} gnoi_shade;
+
+/* The shadow of a caster with holes on [x0,x1), pixel by pixel; neighbours with the same light are one. */
+static int holed_interval(const gnoi_shade *shade, const gnoi_caster *c, double y, double x0, double x1, gnoi_columns *columns)
 {
-    const gno_material *m = &scene->materials[c->material];
+    double from = x0, light[3] = {0, 0, 0};
+    for (double x = x0; x < x1;) {
+        double end = floor(x) + 1, now[3];
+        end = end < x1 ? end : x1;
+        gnoi_holes_through(shade->scene, shade->view, shade->lamp, shade->receiver, c->poly, 0.5 * (x + end), y, now);
+        if (x > x0 && (now[0] != light[0] || now[1] != light[1] || now[2] != light[2])) {
+            if (!gnoi_interval_add(columns, from, x, light))
+                return 0;
+            from = x;
+        }
+        for (int k = 0; k < 3; k++)
+            light[k] = now[k];
+        x = end;
+    }
+    return !(from < x1) || gnoi_interval_add(columns, from, x1, light);
+}
+
+/* Where line y crosses the caster between xa and xb, in pairs (even-odd filling). */
+static int caster_intervals(const gnoi_shade *shade, const gnoi_caster *c, double y, double xa, double xb, gnoi_columns *columns)
+{
+    const gno_material *m = &shade->scene->materials[c->material];
     double *x = columns->crossings;
     uint32_t n = gnoi_edges_cross(columns->edges + c->edge, c->edge_count, y, x);
+    if (gnoi_has_holes(shade->scene, m)) {
+        for (uint32_t i = 0; i + 1 < n; i += 2)
+            if (x[i] < x[i + 1] && !holed_interval(shade, c, y, x[i] > xa ? x[i] : xa, x[i + 1] < xb ? x[i + 1] : xb, columns))
+                return 0;
+        return 1;
+    }
     for (uint32_t i = 0; i + 1 < n; i += 2)
         if (x[i] < x[i + 1] && x[i] < xb && x[i + 1] > xa && !gnoi_interval_add(columns, x[i], x[i + 1], m->transmission))
             return 0;
@@ -135,17 +170,20 @@ void gnoi_caster_light(const gno_scene *scene, const gnoi_view *view, const gnoi
                        double x, double y, double light[3])
 {
     const gnoi_poly *poly = &scene->prepared.polys[caster];
-    const double *t = scene->materials[poly->material].transmission;
-    double z = gnoi_plane_at(&receiver->nearness, x, y);
+    const gno_material *m = &scene->materials[poly->material];
+    double z = gnoi_plane_at(&receiver->nearness, x, y), t[3] = {m->transmission[0], m->transmission[1], m->transmission[2]};
     double d = caster_distance(lamp, poly, gnoi_view_point(view, x, y, z));
+    if (gnoi_has_holes(scene, m))
+        gnoi_holes_through(scene, view, lamp, receiver, caster, x, y, t);
     for (int k = 0; k < 3; k++)
         light[k] = 1 - (1 - t[k]) / (1 + d / lamp->softness);
 }
 
 /* `sources` is a constant at each call, so that the usual lamp does not ask for each caster. */
-static inline int collect(const gno_scene *scene, const gnoi_receiver *receiver, const gnoi_column *column, double y, double xa, double xb,
-                          int sources, gnoi_columns *columns)
+static inline int collect(const gnoi_shade *shade, const gnoi_column *column, double y, double xa, double xb, int sources,
+                          gnoi_columns *columns)
 {
+    const gnoi_receiver *receiver = shade->receiver;
     float fy = (float)y, fa = (float)xa, fb = (float)xb;
     gnoi_row_list list = gnoi_row_list_of(columns, receiver, column->rows, column->caster, column->caster_count, gnoi_region_row(receiver, y));
     size_t before;
@@ -159,7 +197,7 @@ static inline int collect(const gno_scene *scene, const gnoi_receiver *receiver,
                           sizeof *columns->crossings))
             return 0;
         before = columns->interval_count;
-        if (!caster_intervals(scene, c, y, xa, xb, columns) || (sources && !note_source(columns, before, c->poly)))
+        if (!caster_intervals(shade, c, y, xa, xb, columns) || (sources && !note_source(columns, before, c->poly)))
             return 0;
     }
     return 1;
@@ -168,14 +206,15 @@ static inline int collect(const gno_scene *scene, const gnoi_receiver *receiver,
 int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                           const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
 {
+    gnoi_shade shade = {scene, view, lamp, receiver};
     size_t before;
     if (lamp->softness > 0) { /* nothing is halved, there is no sheet */
-        if (!collect(scene, receiver, column, y, xa, xb, 1, columns))
+        if (!collect(&shade, column, y, xa, xb, 1, columns))
             return 0;
         before = columns->interval_count;
         return (!lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns)) && note_source(columns, before, GNOI_NONE);
     }
-    if (!collect(scene, receiver, column, y, xa, xb, 0, columns))
+    if (!collect(&shade, column, y, xa, xb, 0, columns))
         return 0;
     if (column->sheet && !gnoi_sheet_intervals(scene, view, lamp, casters, receiver, column, y, xa, xb, columns))
         return 0;

@@ -1,0 +1,76 @@
+/* tile_texture.c -- textures and bumps of the surfaces seen in a tile: see tile.h, shade/texture.h, shade/relief.h. */
+#include "engine/tile.h"
+#include <string.h>
+
+static gnoi_sight sight_of(const gnoi_tile *tile, gnoi_slot *slot)
+{
+    gnoi_sight sight = {tile->job->scene, &tile->job->view, slot->receiver.poly, &slot->receiver.nearness, &slot->interp};
+    return sight;
+}
+
+/* The slot's mappings, of texture and bump; NULL when memory fails. */
+static gnoi_mapping *seek_mappings(gnoi_tile *tile, gnoi_slot *slot)
+{
+    if (slot->mapping == GNOI_NONE) {
+        if (!gnoi_reserve(tile->lines.context, (void **)&tile->mappings, &tile->mapping_capacity, tile->mapping_count + 2,
+                          sizeof *tile->mappings)) {
+            tile->failed = 1;
+            return NULL;
+        }
+        slot->mapping = (uint32_t)tile->mapping_count;
+        tile->mapping_count += 2;
+        memset(&tile->mappings[slot->mapping], 0, 2 * sizeof *tile->mappings);
+    }
+    return &tile->mappings[slot->mapping];
+}
+
+void gnoi_tile_forget_texels(gnoi_tile *tile)
+{
+    for (int i = 0; i < GNOI_TEXELS && tile->texels; i++)
+        tile->texels[i].poly = GNOI_NONE;
+}
+
+/* Where the texel is kept, or goes; NULL when memory fails. */
+static gnoi_texel *kept_texel(gnoi_tile *tile, uint32_t poly, uint32_t pixel)
+{
+    if (!tile->texels) {
+        tile->texels = gnoi_malloc(tile->lines.context, GNOI_TEXELS, sizeof *tile->texels);
+        tile->failed |= !tile->texels;
+        gnoi_tile_forget_texels(tile);
+    }
+    return tile->texels ? &tile->texels[(poly * 0x9e3779b1u ^ pixel) & (GNOI_TEXELS - 1)] : NULL;
+}
+
+void gnoi_tile_set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y)
+{
+    uint32_t material = slot->receiver.poly->material, pixel = (uint32_t)(row * GNOI_TILE_W + column);
+    int keep = tile->job->tones[material].has_holes;
+    gnoi_texel *kept = keep ? kept_texel(tile, slot->receiver.index, pixel) : NULL;
+    gnoi_sight sight = sight_of(tile, slot);
+    gnoi_mapping *mappings;
+    if (kept && kept->poly == slot->receiver.index && kept->pixel == pixel) {
+        memcpy(tile->texel, kept->rgba, sizeof tile->texel);
+        return;
+    }
+    mappings = seek_mappings(tile, slot);
+    if (!mappings)
+        return;
+    gnoi_texture_at(&sight, &tile->job->scene->materials[material].texture, mappings, tile->x0 + column + 0.5, tile->y0 + row - 0.5, x, y,
+                    tile->texel);
+    if (kept) {
+        kept->poly = slot->receiver.index;
+        kept->pixel = pixel;
+        memcpy(kept->rgba, tile->texel, sizeof kept->rgba);
+    }
+}
+
+vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n)
+{
+    uint32_t material = slot->receiver.poly->material;
+    gnoi_sight sight = sight_of(tile, slot);
+    gnoi_mapping *mappings = seek_mappings(tile, slot);
+    if (!mappings)
+        return n;
+    return gnoi_relief_normal(&sight, &tile->job->scene->materials[material].bump, &mappings[!tile->job->tones[material].one_place],
+                              tile->x0 + column + 0.5, tile->y0 + row - 0.5, x, y, n);
+}

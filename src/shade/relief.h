@@ -1,0 +1,16 @@
+/* relief.h -- a surface's normal turned by its material's bump.
+ *
+ * Place in the data flow: interpolated normal of a sample -> here -> lighting. The surface itself, its edges and shadows stay.
+ * With heights N' = N - grad h, the gradient of the height over the surface; where N = Q_x x Q_y is the surface's own this is 8.6.7,
+ * and it does not ask which way the pattern runs. Heights rise towards the viewer.
+ */
+#ifndef GNOI_SHADE_RELIEF_H
+#define GNOI_SHADE_RELIEF_H
+
+#include "shade/texture.h"
+
+/* n: unit, on the viewer's side; (x,y) the pixel's centre, (xs,ys) the sample. mapping: that of the bump's texture. The result is not
+ * of unit length. */
+vec3 gnoi_relief_normal(const gnoi_sight *sight, const gno_bump *bump, gnoi_mapping *mapping, double x, double y, double xs, double ys, vec3 n);
+
+#endif
