@@ -199,11 +199,9 @@ asan-run: tests
 	@BUILD='$(BUILD)' ASAN_OPTIONS=allocator_may_return_null=1:$$ASAN_OPTIONS \
 	 sh tests/run.sh $(BUILD)/logs $(TEST_BIN)
 
+# BENCH: what to measure; tests/bench/bench.sh tells the words (quick, matrix, a scene, ...)
 bench: all
-	@if [ -f tests/bench/run.sh ]; then GNOMON='$(abspath $(BUILD)/gnomon)' bash tests/bench/run.sh; \
-	 else for script in tests/bench/*.sh; do \
-	   if [ -f "$$script" ]; then GNOMON='$(abspath $(BUILD)/gnomon)' bash "$$script" || exit 1; fi; \
-	 done; fi
+	@GNOMON='$(abspath $(BUILD)/gnomon)' OUT='$(BUILD)/bench' bash tests/bench/bench.sh $(BENCH)
 
 # ---- system packages -----------------------------------------------------------------------------------------------
 PACKAGES := $(if $(filter gcc clang,$(CC)),$(CC)) libc6-dev make pkg-config \

@@ -1,6 +1,6 @@
 /* town.c -- writes a town of houses with pitched roofs as OBJ, MTL and scene file, for measuring growth.
  *
- * usage: town POLYGONS LIGHTS FOLDER      writes FOLDER/town.obj, town.mtl and town.yaml
+ * usage: town POLYGONS LIGHTS FOLDER      writes FOLDER/town.obj, town.mtl, town.yaml, and town.json, the same view for the ray-traced peer
  *
  * The town fills the same square whatever its number of polygons, and the camera sees all of it: more polygons are more
  * and smaller houses, not a larger picture. A house has six polygons: two side walls, two gabled walls of five corners, two
@@ -89,19 +89,41 @@ static void write_town(FILE *f, long polygons)
     }
 }
 
+/* The lights: the first a sun by its direction, the others by their places. */
+static int light_at(int i, int lights, double at[3], double colour[3])
+{
+    double share = 1.0 / lights, turn = 2 * PI * i / lights + 0.7;
+    static const double sun[3] = {0.5, 0.35, -0.6}, sun_colour[3] = {1, 0.95, 0.85}, lamp_colour[3] = {0.9, 0.9, 1};
+    for (int k = 0; k < 3; k++) {
+        at[k] = i == 0 ? sun[k] : k == 0 ? 70 * cos(turn) : k == 1 ? 70 * sin(turn) : 45.0 + 10 * (i % 3);
+        colour[k] = share * (i == 0 ? sun_colour[k] : lamp_colour[k]);
+    }
+    return i == 0;
+}
+
 static void write_scene(FILE *f, int lights)
 {
     fprintf(f, "gnomon: 1\nimage: {width: 1920, height: 1080, background: [0.55, 0.66, 0.82]}\n");
     fprintf(f, "camera: {eye: [14, -112, 78], target: [-1, -7, 0], up: [0, 0, 1], fov: 35}\nambient: [0.3, 0.3, 0.34]\nlights:\n");
     for (int i = 0; i < lights; i++) {
-        double share = 1.0 / lights, turn = 2 * PI * i / lights + 0.7;
-        if (i == 0)
-            fprintf(f, "  - {type: directional, direction: [0.5, 0.35, -0.6], intensity: [%g, %g, %g]}\n", share, 0.95 * share, 0.85 * share);
-        else
-            fprintf(f, "  - {type: point, position: [%g, %g, %g], intensity: [%g, %g, %g]}\n", 70 * cos(turn), 70 * sin(turn),
-                    45.0 + 10 * (i % 3), 0.9 * share, 0.9 * share, share);
+        double at[3], c[3];
+        int sun = light_at(i, lights, at, c);
+        fprintf(f, "  - {type: %s, %s: [%g, %g, %g], intensity: [%g, %g, %g]}\n", sun ? "directional" : "point", sun ? "direction" : "position",
+                at[0], at[1], at[2], c[0], c[1], c[2]);
     }
     fprintf(f, "objects:\n  - {mesh: town.obj}\n");
+}
+
+static void write_peer_scene(FILE *f, int lights)
+{
+    fprintf(f, "{\"obj\": \"town.obj\", \"smooth\": 0, \"eye\": [14, -112, 78], \"target\": [-1, -7, 0], \"up\": [0, 0, 1], \"vfov_deg\": 35,\n");
+    fprintf(f, " \"width\": 1920, \"height\": 1080, \"background\": [0.55, 0.66, 0.82], \"ambient\": [0.3, 0.3, 0.34],\n \"lights\": [");
+    for (int i = 0; i < lights; i++) {
+        double at[3], c[3], s = light_at(i, lights, at, c) ? -1 : 1;
+        fprintf(f, "%s\n  {\"type\": \"%s\", \"%s\": [%g, %g, %g], \"color\": [%g, %g, %g]}", i > 0 ? "," : "", s < 0 ? "directional" : "point",
+                s < 0 ? "to_light" : "pos", s * at[0], s * at[1], s * at[2], c[0], c[1], c[2]);
+    }
+    fprintf(f, "]}\n");
 }
 
 int main(int argc, char **argv)
@@ -119,6 +141,9 @@ int main(int argc, char **argv)
     finish(f);
     f = create(argv[3], "town.yaml");
     write_scene(f, (int)lights);
+    finish(f);
+    f = create(argv[3], "town.json");
+    write_peer_scene(f, (int)lights);
     finish(f);
     return 0;
 }
