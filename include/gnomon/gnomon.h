@@ -335,7 +335,8 @@ GNO_API gno_terrain gno_terrain_default(void);
 
 /* Adds a terrain as triangles, with texture coordinates from (0,0) to (1,1) over the polygon's extent, its first side along (1,0).
  * look: name, material, shading, averaging, transform and priority as of a mesh, its arrays unread; NULL: the defaults. The same
- * definition gives the same triangles on every machine. Errors: MEMORY, ARGUMENT, LIMIT; the scene is unchanged then. */
+ * definition gives the same triangles on every machine. Errors: MEMORY, ARGUMENT, LIMIT (2^25 triangles), CANCELLED; the scene is
+ * unchanged then. */
 GNO_API gno_status gno_scene_add_terrain(gno_scene *scene, const gno_terrain *terrain, const gno_mesh_def *look, size_t *first_polygon);
 
 /* Makes all polygons of an object (a mesh, numbered as added) details of a polygon, which may have been added later; polygon -1:

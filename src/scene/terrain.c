@@ -16,6 +16,8 @@
 
 #define MOST_LEVELS 14
 #define MOST_TERRAIN_CORNERS 65536
+#define MOST_TRIANGLES 33554432 /* 2^25: 12 levels of a square, some 3 GB while it grows; more is a slip of the pen */
+#define STEP 65536              /* triangles from one look at the progress callback to the next */
 
 typedef struct edge_entry {
     uint32_t a, b, middle; /* a < b; middle GNOI_NONE: a free place */
@@ -37,7 +39,8 @@ typedef struct growing {
     int *corners;            /* of triangles */
     size_t edge_count, edge_capacity; /* a power of two */
     edge_entry *edges;
-    gno_status failed;       /* sticky */
+    double expected;         /* triangles, if all were divided */
+    gno_status failed;       /* sticky; its message is set where it is CANCELLED */
 } growing;
 
 gno_terrain gno_terrain_default(void)
@@ -113,7 +116,7 @@ static uint32_t add_vertex(growing *g, vec3 p, uint64_t key)
     size_t i = g->vertex_count;
     vec3 from = v3_sub(p, g->origin);
     void *positions = g->positions, *keys = g->keys, *texcoords = g->texcoords;
-    if (i >= GNO_MAX_POLYGONS) {
+    if (i >= MOST_TRIANGLES) {
         fail(g, GNO_ERROR_LIMIT);
         return 0;
     }
@@ -234,6 +237,11 @@ static void add_triangle(growing *g, uint32_t a, uint32_t b, uint32_t c)
     g->corners[i + 1] = (int)b;
     g->corners[i + 2] = (int)c;
     g->corner_count += 3;
+    if (g->corner_count / 3 > MOST_TRIANGLES) {
+        fail(g, GNO_ERROR_LIMIT);
+    } else if (g->corner_count / 3 % STEP == 0) {
+        fail(g, gnoi_progress(g->context, "terrain", (double)(g->corner_count / 3) / g->expected));
+    }
 }
 
 /* Triangles between a centre and whatever an edge became. */
@@ -334,11 +342,20 @@ static int all_in(const double *values, size_t count, double most)
     return 1;
 }
 
+/* Triangles if all is divided everywhere. */
+static double most_triangles(const gno_terrain *t)
+{
+    double most = 2.0 * (double)t->corner_count;
+    int level;
+    for (level = 1; level < t->levels; level++) {
+        most *= 4;
+    }
+    return most;
+}
+
 static gno_status check(gno_context *context, const gno_terrain *t)
 {
     const char *wrong = NULL;
-    double worst;
-    int level;
     if (t->corner_count < 3 || t->corner_count > MOST_TERRAIN_CORNERS || !t->corners) {
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "terrain: %zu corners are not 3 to %d", t->corner_count, MOST_TERRAIN_CORNERS);
     }
@@ -360,13 +377,9 @@ static gno_status check(gno_context *context, const gno_terrain *t)
     if (wrong) {
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "terrain: %s is out of range", wrong);
     }
-    worst = 2.0 * (double)t->corner_count; /* triangles, if all is divided everywhere */
-    for (level = 1; level < t->levels; level++) {
-        worst *= 4;
-    }
-    if (!(t->detail > 0) && worst > GNO_MAX_POLYGONS) {
+    if (!(t->detail > 0) && most_triangles(t) > MOST_TRIANGLES) {
         return gnoi_fail(context, GNO_ERROR_LIMIT, "terrain: %d levels of %zu corners make more than %d triangles", t->levels,
-                         t->corner_count, GNO_MAX_POLYGONS);
+                         t->corner_count, MOST_TRIANGLES);
     }
     return GNO_OK;
 }
@@ -405,6 +418,7 @@ static gno_status start(growing *g)
     for (k = 0; k < 2; k++) {
         g->span[k] = high[k] > g->low[k] ? high[k] - g->low[k] : 1;
     }
+    g->expected = most_triangles(t);
     g->swing[0] = t->height;
     for (k = 0; k < MOST_LEVELS; k++) {
         g->swing[k + 1] = g->swing[k] * t->roughness;
@@ -423,12 +437,10 @@ static gno_status grow(growing *g)
     }
     add_polygon(g, corners, corners + count, count);
     gnoi_free(g->context, corners, 2 * count, sizeof *corners);
-    if (g->failed == GNO_OK && (g->corner_count > GNO_MAX_CORNERS || g->corner_count / 3 > GNO_MAX_POLYGONS)) {
-        fail(g, GNO_ERROR_LIMIT);
+    if (g->failed == GNO_ERROR_LIMIT) {
+        return gnoi_fail(g->context, g->failed, "terrain: more than %d triangles", MOST_TRIANGLES);
     }
-    return g->failed == GNO_OK ? GNO_OK
-                               : gnoi_fail(g->context, g->failed, g->failed == GNO_ERROR_LIMIT ? "terrain: too many triangles"
-                                                                                              : "terrain: out of memory");
+    return g->failed == GNO_ERROR_MEMORY ? gnoi_fail(g->context, g->failed, "terrain: out of memory") : g->failed;
 }
 
 gno_status gno_scene_add_terrain(gno_scene *scene, const gno_terrain *terrain, const gno_mesh_def *look, size_t *first_polygon)
@@ -444,6 +456,7 @@ gno_status gno_scene_add_terrain(gno_scene *scene, const gno_terrain *terrain, c
     g.context = context;
     g.def = terrain;
     g.transform = mesh.transform;
+    g.expected = 1;
     status = check(context, terrain);
     if (status == GNO_OK) {
         status = start(&g);

@@ -330,10 +330,38 @@ static void test_bad_terrains(void **state)
     REFUSED(t.least_levels = -1, GNO_ERROR_ARGUMENT, "terrain: least_levels is out of range");
     REFUSED(t.detail = NAN, GNO_ERROR_ARGUMENT, "terrain: detail is out of range");
     REFUSED(t.viewer[1] = INFINITY, GNO_ERROR_ARGUMENT, "terrain: viewer is out of range");
-    REFUSED(t.levels = 14, GNO_ERROR_LIMIT, "terrain: 14 levels of 4 corners make more than 268435456 triangles");
+    REFUSED(t.levels = 14, GNO_ERROR_LIMIT, "terrain: 14 levels of 4 corners make more than 33554432 triangles");
     assert_int_equal(gno_scene_count(scene).polygons, 0);
     assert_int_equal(gno_scene_add_terrain(NULL, &good, NULL, NULL), GNO_ERROR_ARGUMENT);
     assert_int_equal(gno_scene_add_terrain(scene, NULL, NULL, NULL), GNO_ERROR_ARGUMENT);
+    end(context, scene);
+}
+
+static int stop_at_once(void *user, const char *stage, double fraction)
+{
+    assert_true(fraction >= 0 && fraction <= 1);
+    ++*(int *)user;
+    return !strcmp(stage, "terrain");
+}
+
+/* A large one can be stopped while it grows. */
+static void test_cancel(void **state)
+{
+    int asked = 0;
+    gno_context_def def = gno_context_def_default();
+    gno_context *context;
+    gno_scene *scene;
+    gno_terrain t = terrain_on(square, 4);
+    (void)state;
+    def.progress = stop_at_once;
+    def.progress_user = &asked;
+    t.levels = 9;
+    assert_int_equal(gno_context_create(&def, &context), GNO_OK);
+    assert_int_equal(gno_scene_create(context, &scene), GNO_OK);
+    assert_int_equal(gno_scene_add_terrain(scene, &t, NULL, NULL), GNO_ERROR_CANCELLED);
+    assert_string_equal(gno_context_message(context), "terrain: cancelled");
+    assert_true(asked > 0);
+    assert_int_equal(gno_scene_count(scene).polygons, 0);
     end(context, scene);
 }
 
@@ -491,6 +519,7 @@ int main(void)
         cmocka_unit_test(test_neighbours_fit),
         cmocka_unit_test(test_polygons),
         cmocka_unit_test(test_bad_terrains),
+        cmocka_unit_test(test_cancel),
         cmocka_unit_test(test_no_memory),
         cmocka_unit_test(test_segment_and_square),
         cmocka_unit_test(test_koch_curve),
