@@ -133,10 +133,13 @@ static void check_picture(const char *name)
 }
 
 static void test_crossing(void **state) { (void)state; check_picture("crossing"); }
+static void test_details(void **state) { (void)state; check_picture("details"); }
+static void test_glass(void **state) { (void)state; check_picture("glass"); }
 static void test_house(void **state) { (void)state; check_picture("house"); }
 static void test_lamps(void **state) { (void)state; check_picture("lamps"); }
 static void test_room(void **state) { (void)state; check_picture("room"); }
 static void test_smooth(void **state) { (void)state; check_picture("smooth"); }
+static void test_soft_shadows(void **state) { (void)state; check_picture("soft_shadows"); }
 static void test_sundial(void **state) { (void)state; check_picture("sundial"); }
 static void test_town(void **state) { (void)state; check_picture("town"); }
 
@@ -144,7 +147,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_crossing), cmocka_unit_test(test_house),  cmocka_unit_test(test_lamps),   cmocka_unit_test(test_room),
-        cmocka_unit_test(test_smooth),   cmocka_unit_test(test_sundial), cmocka_unit_test(test_town),
+        cmocka_unit_test(test_smooth),   cmocka_unit_test(test_sundial), cmocka_unit_test(test_town),    cmocka_unit_test(test_details),
+        cmocka_unit_test(test_glass),    cmocka_unit_test(test_soft_shadows),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
