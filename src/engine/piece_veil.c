@@ -19,8 +19,10 @@ int gnoi_piece_veils_add(gnoi_piece_veils *veils, gnoi_tile *tile, uint32_t slot
             if (area[y][x] > 0)
                 pass = gnoi_tile_pass(tile, slot, x * GNOI_X_ONE, (x + 1) * GNOI_X_ONE, tile->y0 + y + 0.5);
             veil->own[y][x] = pass.own;
+            veil->area[y][x] = (float)area[y][x];
+            veil->before[y][x] = 0;
             for (int k = 0; k < 3; k++)
-                veil->left[k][y][x] = 1 - (float)area[y][x] * (1 - pass.through[k]);
+                veil->through[k][y][x] = pass.through[k];
         }
     return 1;
 }
@@ -43,6 +45,28 @@ static int lies_before(const gnoi_piece_veil *veil, const gnoi_receiver *r, doub
     return veil->poly->source < r->poly->source;
 }
 
+void gnoi_piece_veils_cover(gnoi_piece_veils *veils, const gnoi_tile *tile, const gnoi_receiver *receiver, gnoi_tile_values area)
+{
+    for (size_t i = 0; i < veils->count; i++)
+        for (int y = 0; y < tile->height; y++)
+            for (int x = 0; x < tile->width; x++)
+                if (area[y][x] > 0 && !lies_before(&veils->list[i], receiver, tile->x0 + x + 0.5, tile->y0 + y + 0.5))
+                    veils->list[i].before[y][x] += (float)area[y][x];
+}
+
+void gnoi_piece_veils_finish(gnoi_piece_veils *veils, const gnoi_tile *tile)
+{
+    for (size_t i = 0; i < veils->count; i++) {
+        gnoi_piece_veil *veil = &veils->list[i];
+        for (int y = 0; y < tile->height; y++)
+            for (int x = 0; x < tile->width; x++) {
+                float bare = 1 - veil->before[y][x], area = veil->area[y][x], share = area < bare ? area / bare : area > 0;
+                for (int k = 0; k < 3; k++)
+                    veil->through[k][y][x] = 1 - share * (1 - veil->through[k][y][x]);
+            }
+    }
+}
+
 void gnoi_piece_veils_at(const gnoi_piece_veils *veils, const gnoi_tile *tile, const gnoi_receiver *receiver, int x, int y, double left[3])
 {
     left[0] = left[1] = left[2] = 1;
@@ -53,6 +77,6 @@ void gnoi_piece_veils_at(const gnoi_piece_veils *veils, const gnoi_tile *tile, c
         if (receiver && !lies_before(veil, receiver, tile->x0 + x + 0.5, tile->y0 + y + 0.5))
             continue;
         for (int k = 0; k < 3; k++)
-            left[k] *= (double)veil->left[k][y][x];
+            left[k] *= (double)veil->through[k][y][x];
     }
 }

@@ -320,22 +320,37 @@ static int next_run(const painter *p, size_t index, run *r)
     return 1;
 }
 
-/* Finds what each polygon that is not opaque does to what lies behind it. */
-static int find_veils(painter *p, size_t index)
+/* Coverage of all polygons of a tile that are opaque, or of all that are not, into the veils. Returns 0 when memory fails. */
+static int cover_veils(painter *p, size_t index, int opaque)
 {
     run r = {NULL, 0, NULL, 0, 0, 0};
-    p->veils.count = 0;
     while (next_run(p, index, &r)) {
-        if (p->job->frame->scene->prepared.polys[r.poly].opaque)
+        if ((int)p->job->frame->scene->prepared.polys[r.poly].opaque != opaque)
             continue;
         if (!set_slot(p, r.poly) || !sort_lamps(p, &r))
             return 0;
         if (p->tile.slots[0].receiver.side == 0)
             continue;
         add_pieces(p, &r);
-        if (!gnoi_piece_veils_add(&p->veils, &p->tile, 0, p->total.area))
+        if (opaque)
+            gnoi_piece_veils_cover(&p->veils, &p->tile, &p->tile.slots[0].receiver, p->total.area);
+        else if (!gnoi_piece_veils_add(&p->veils, &p->tile, 0, p->total.area))
             return 0;
     }
+    return 1;
+}
+
+/* Finds what each polygon that is not opaque does to what lies behind it. */
+static int find_veils(painter *p, size_t index)
+{
+    p->veils.count = 0;
+    if (!cover_veils(p, index, 0))
+        return 0;
+    if (p->veils.count == 0)
+        return 1;
+    if (!cover_veils(p, index, 1))
+        return 0;
+    gnoi_piece_veils_finish(&p->veils, &p->tile);
     return 1;
 }
 
@@ -453,12 +468,22 @@ static gno_status work_on_tiles(paint_job *job, gno_stats *stats)
     return status;
 }
 
+static void warn_of_softness(const gno_scene *scene)
+{
+    for (size_t i = 0; i < scene->light_count; i++)
+        if (scene->lights[i].light.softness > 0) {
+            gnoi_warn(scene->context, "light \"%s\": pieces know no softness, its shadows stay dark", scene->lights[i].name);
+            return;
+        }
+}
+
 /* The set of pieces, and what it has beside, onto the picture. */
 static gno_status job_make(paint_job *job, const gnoi_frame_job *frame, const gno_pieces *pieces)
 {
     gno_status status;
     memset(job, 0, sizeof *job);
     job->frame = frame;
+    warn_of_softness(frame->scene);
     job->seen.pieces = pieces;
     job->beside.pieces = gnoi_pieces_beside(pieces);
     status = gnoi_piece_bins_build(frame->scene, &frame->view, pieces, &job->seen.bins);
