@@ -94,7 +94,7 @@ static void set_stand(const gnoi_centre *centre, const gnoi_poly *poly, int see_
     s->lift = (double)s->side * lift;
     s->tolerance = plane_tolerance(&scene->prepared, poly);
     s->convex = (unsigned char)is_convex(scene, poly);
-    s->hides = (unsigned char)(s->side == 0 ? 0 : poly->opaque ? 1 : t[0] >= 1 && t[1] >= 1 && t[2] >= 1 ? 0 : 2);
+    s->hides = (unsigned char)(s->side == 0 || poly->detail ? 0 : poly->opaque ? 1 : t[0] >= 1 && t[1] >= 1 && t[2] >= 1 ? 0 : 2);
     s->hidden = 0;
     s->absent = (unsigned char)(centre->view && s->side < 0 && !poly->two_sided);
     if (centre->view && s->side != 0)
@@ -200,7 +200,7 @@ gno_status gnoi_centre_make(const gno_scene *scene, const gnoi_lamp *lamp, const
         return GNO_ERROR_MEMORY;
     for (size_t i = 0; i < prep->poly_count; i++)
         set_stand(centre, &prep->polys[i], see_through, &centre->stands[i]);
-    status = settle_parts(centre) ? gnoi_tree_build(scene, lamp, NULL, &centre->tree) : GNO_ERROR_MEMORY;
+    status = settle_parts(centre) ? gnoi_tree_build_part(scene, lamp, NULL, view ? GNOI_TREE_SEEN : GNOI_TREE_ALL, &centre->tree) : GNO_ERROR_MEMORY;
     if (status)
         gnoi_centre_free(centre);
     return status;

@@ -67,6 +67,8 @@ int gnoi_halved_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsign
 
 static int is_part(gnoi_tree_part part, int side)
 {
+    if (part == GNOI_TREE_SEEN)
+        return 1;
     return part == GNOI_TREE_FAR ? side > 0 : part == GNOI_TREE_SINGLE ? side == 0 : side >= 0;
 }
 
@@ -81,7 +83,7 @@ static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const un
         vec3 points[GNOI_FRAME_POINTS];
         gnoi_lbox box[6];
         int n;
-        if (poly->detail || (!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1) ||
+        if ((part != GNOI_TREE_SEEN && (poly->detail || (!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1))) ||
             !is_part(part, gnoi_halved_side(scene, lamp, halved, poly)) ||
             (i >= prep->poly_count && gnoi_halved_side(scene, lamp, halved, poly) == 0))
             continue;

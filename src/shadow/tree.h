@@ -71,7 +71,8 @@ gno_status gnoi_tree_pack(gno_context *context, const gnoi_boxes *boxes, const g
 typedef enum gnoi_tree_part {
     GNOI_TREE_ALL,    /* every caster but the near sides of halved solids */
     GNOI_TREE_SINGLE, /* casters that belong to no halved solid */
-    GNOI_TREE_FAR     /* far sides of halved solids */
+    GNOI_TREE_FAR,    /* far sides of halved solids */
+    GNOI_TREE_SEEN    /* every polygon, as an eye asks: details hide what bears them, though they cast no shadow */
 } gnoi_tree_part;
 
 /* Builds the tree of the polygons that let less than all light through. */
