@@ -183,11 +183,14 @@ static gnoi_sheet_state add_rims(const gnoi_pair *p, const gnoi_casters *casters
     return column->sheet ? GNOI_SHEET_PART : GNOI_SHEET_NOWHERE;
 }
 
-/* Looks at the far sides about as deep as the receiver: PIERCED when one passes through it or when one that stands on it may go on
- * below, PART when any is overhead. */
+/* Looks at the far sides about as deep as the receiver: PIERCED when one passes through it, when one that stands on it may go on
+ * below, or when one of its own solid lies on it, as the receiver itself where the solid is inside out; PART when any is
+ * overhead. A far side of another solid that lies on the receiver counts as above: it stands on it, and hides it. */
 static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
                                 gnoi_columns *columns)
 {
+    const gnoi_prepared *prep = &p->scene->prepared;
+    const uint32_t solid = gnoi_solid_of(prep, p->receiver->poly);
     gnoi_probe low = *probe;
     int overhead = 0, standing = 0, hanging = 0;
     low.qc -= 3 * probe->lift; /* what touches the plane from below is to be seen too */
@@ -195,12 +198,12 @@ static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_casters *casters,
     if (!gnoi_tree_query_level(columns->context, &casters->far, &columns->far_front, box, &low, &columns->found, &overhead))
         return GNOI_SHEET_NO_MEMORY;
     for (size_t i = 0; i < columns->found.count; i++) {
-        const gnoi_poly *poly = &p->scene->prepared.polys[columns->found.items[i]];
+        const gnoi_poly *poly = &prep->polys[columns->found.items[i]];
         int touching;
         place at = place_of(p, poly, &touching);
         if (gnoi_pair_separated(p, poly))
             continue;
-        if (at == THROUGH)
+        if (at == THROUGH || (touching == (int)poly->corner_count && gnoi_solid_of(prep, poly) == solid))
             return GNOI_SHEET_PIERCED;
         overhead |= at == ABOVE;
         standing |= at == ABOVE && touching > 1;

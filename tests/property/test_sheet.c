@@ -118,7 +118,7 @@ static int compare(const float *a, const float *b)
         float d = 0;
         for (int k = 0; k < 3; k++)
             d = fmaxf(d, fabsf(a[3 * i + k] - b[3 * i + k]));
-        n += d > 5e-3f;
+        n += d > 2e-2f;
     }
     return n;
 }

@@ -77,18 +77,30 @@ static void make_torus(solid *s, int m, int n, double thick, double bump, uint32
         }
 }
 
+/* Folds the surface here and there: some of its triangles then face inwards, some pass through others. */
+static void crumple(solid *s, uint32_t *seed)
+{
+    for (size_t i = 0; i < s->vertices; i++)
+        for (int k = 0; k < 3 && i % 5 == 0; k++)
+            s->p[i][k] += solid_uniform(seed, -0.12, 0.12);
+}
+
 void solid_make(solid *s, uint32_t *seed, int open_allowed)
 {
     double square[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
     memset(s, 0, offsetof(solid, p));
     s->ring[0] = 0;
-    switch (solid_random(seed) % 6) {
+    switch (solid_random(seed) % 7) {
     case 0:
     case 1: make_prism(s, 4, square, open_allowed && (solid_random(seed) & 1)); break;
     case 2:
     case 3: make_star(s, 3 + (int)(solid_random(seed) % 4), solid_uniform(seed, 0.3, 0.7), open_allowed && (solid_random(seed) & 1)); break;
     case 4: make_torus(s, 12, 8, 0.35, 0, seed); break;
-    default: make_torus(s, 30, 16, 0.3, 0.3, seed); break;
+    case 5: make_torus(s, 30, 16, 0.3, 0.3, seed); break;
+    default:
+        make_torus(s, 30, 16, 0.3, 0.1, seed);
+        if (open_allowed)
+            crumple(s, seed);
     }
 }
 

@@ -14,8 +14,8 @@ typedef struct solid {
     int corner[4 * SOLID_MOST];
 } solid;
 
-/* A box, a star-shaped prism with concave lids (either may lack the lid at z = 0 when open_allowed), or a smooth or a bumpy torus of
- * triangles; about one unit in radius, standing on z = 0. */
+/* A box, a star-shaped prism with concave lids (either may lack the lid at z = 0 when open_allowed), a smooth or a bumpy torus of
+ * triangles, or one crumpled through itself (when open_allowed; else as before); about one unit in radius, standing on z = 0. */
 void solid_make(solid *s, uint32_t *seed, int open_allowed);
 
 /* A mesh that reads the solid's arrays. */
