@@ -147,7 +147,7 @@ static void test_floor_to_the_horizon(void **state)
     free(rgb);
 }
 
-/* An object and its camera moved, turned and made 3 times as large together: the same picture of the same pattern. */
+/* An object, its light and its camera moved, turned and made 3 times as large together: the same picture of pattern and bumps. */
 static void test_pattern_sticks_to_its_object(void **state)
 {
     static const double turned[12] = {0, -3, 0, 10, 3, 0, 0, -20, 0, 0, 3, 5}; /* a quarter turn about z */
@@ -158,6 +158,7 @@ static void test_pattern_sticks_to_its_object(void **state)
     for (int pattern = GNO_PATTERN_WOOD; pattern <= GNO_PATTERN_CLOUD; pattern++) {
         gno_material m = patterned((gno_pattern)pattern);
         gno_camera camera = gno_camera_default();
+        gno_light lamp = gno_light_default();
         double difference = 0, variation = 0;
         void *fresh = NULL;
         bed *b;
@@ -165,8 +166,16 @@ static void test_pattern_sticks_to_its_object(void **state)
         b = fresh;
         camera.target[2] = 0;
         m.texture.procedural.origin[2] = 0.11;
+        m.bump.kind = GNO_BUMP_HEIGHT;
+        m.bump.amount = 0.1;
+        m.bump.texture.kind = GNO_TEXTURE_PROCEDURAL;
+        m.bump.texture.procedural = m.texture.procedural;
         gno_scene_set_camera(b->scene, &camera);
         add_square(b, &m, 2, NULL);
+        lamp.position[0] = 1;
+        lamp.position[1] = -2;
+        lamp.position[2] = 3;
+        assert_int_equal(gno_scene_add_light(b->scene, NULL, &lamp, NULL), GNO_OK);
         render(b, first);
         tear_down(&fresh);
         assert_int_equal(set_up(&fresh), 0);
@@ -179,6 +188,10 @@ static void test_pattern_sticks_to_its_object(void **state)
         camera.target[2] = 5;
         gno_scene_set_camera(b->scene, &camera);
         add_square(b, &m, 2, turned);
+        lamp.position[0] = 10 - 3 * -2;
+        lamp.position[1] = -20 + 3 * 1;
+        lamp.position[2] = 5 + 3 * 3;
+        assert_int_equal(gno_scene_add_light(b->scene, NULL, &lamp, NULL), GNO_OK);
         render(b, second);
         tear_down(&fresh);
         for (int i = 0; i < 3 * WIDTH * HEIGHT; i++) {
@@ -191,6 +204,44 @@ static void test_pattern_sticks_to_its_object(void **state)
     }
     free(first);
     free(second);
+}
+
+/* Straight veins as a bump: the height a (1 + sin t)/2, t = 2 pi r x, has the slope a pi r cos t along x, and N = (-slope, 0, 1). Light falls
+ * straight down on the plane, kd 1: the picture is 1/|N|. One pixel a point. */
+static void test_bump_by_hand(void **state)
+{
+    bed *b = *state;
+    gno_material m = gno_material_default();
+    gno_light sun = gno_light_default();
+    gno_camera camera = gno_camera_default();
+    const gno_image_def one = {1, 1, {0, 0, 0}};
+    memset(m.ambient, 0, sizeof m.ambient);
+    for (int k = 0; k < 3; k++)
+        m.diffuse[k] = 1;
+    m.bump.kind = GNO_BUMP_HEIGHT;
+    m.bump.amount = 0.2;
+    m.bump.texture.kind = GNO_TEXTURE_PROCEDURAL;
+    m.bump.texture.procedural = gno_procedural_default(GNO_PATTERN_MARBLE);
+    m.bump.texture.procedural.distortion = 0;
+    m.bump.texture.procedural.sharpness = 1;
+    m.bump.texture.procedural.rings = 1.5;
+    sun.type = GNO_LIGHT_DIRECTIONAL;
+    sun.direction[2] = -1;
+    add_square(b, &m, 4, NULL);
+    assert_int_equal(gno_scene_add_light(b->scene, NULL, &sun, NULL), GNO_OK);
+    assert_int_equal(gno_scene_set_image(b->scene, &one), GNO_OK);
+    camera.fov = 0.01;
+    for (int i = 0; i < 10; i++) {
+        double x = 0.13 * i - 0.5, slope = 0.2 * 3.141592653589793 * 1.5 * cos(6.283185307179586 * 1.5 * x);
+        float rgb[3];
+        camera.target[0] = x;
+        camera.target[1] = 0.3;
+        camera.target[2] = 0;
+        assert_int_equal(gno_scene_set_camera(b->scene, &camera), GNO_OK);
+        render(b, rgb);
+        if (!(fabs((double)rgb[0] - 1 / sqrt(1 + slope * slope)) < 1e-4))
+            fail_msg("at %g: %g, slope %g", x, (double)rgb[0], slope);
+    }
 }
 
 static void test_bad_pattern_is_refused(void **state)
@@ -207,6 +258,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup_teardown(test_floor_to_the_horizon, set_up, tear_down),
         cmocka_unit_test(test_pattern_sticks_to_its_object),
+        cmocka_unit_test_setup_teardown(test_bump_by_hand, set_up, tear_down),
         cmocka_unit_test_setup_teardown(test_bad_pattern_is_refused, set_up, tear_down),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
