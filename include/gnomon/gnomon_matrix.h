@@ -6,12 +6,15 @@
  * viewer. Compiles as C89 to C17 and C++98 to C++17.
  *
  * The diagonal tells of own shadow. A polygon's front is the side that its normal points to, by its winding; of a closed solid
- * that has the light outside it is the outer side, whatever the winding. A one at (p, p) means that the light stands behind polygon p or
+ * that has the light outside it (one whose only opening is flat, as a house without a floor, counts as closed
+ * for light that does not come through the opening) it is the outer side,
+ * whatever the winding. A one at (p, p) means that the light stands behind polygon p or
  * in its plane: seen from the front, all of p is in its own shadow. (A polygon that is not planar and shades a part of itself has it too.)
  * - A one-sided polygon, one that the light meets edge-on, and one of a closed solid that has the light outside, is dark then
  *   from wherever it is seen: nothing else is looked for, and the diagonal is the only one in its column.
  * - Any other two-sided polygon can be seen from behind, on the side that the light shines on: its column lists the casters of that side.
- * A polygon that lets all light through casts nothing: its row is empty. So are row and column of a polygon without area.
+ * A polygon that lets all light through casts nothing: its row is empty. So is that of a detail of another polygon (gno_mesh_def), and row and
+ * column of a polygon without area.
  */
 #ifndef GNOMON_GNOMON_MATRIX_H
 #define GNOMON_GNOMON_MATRIX_H

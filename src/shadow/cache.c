@@ -43,14 +43,6 @@ static int eye_outside(const gno_scene *scene, size_t solid, const gnoi_view *vi
     return s->cap == GNOI_NONE || v3_dot(v3_from(scene->prepared.polys[s->cap].n), view->forward) > 0;
 }
 
-static int lamp_outside(const gno_scene *scene, size_t solid, const gnoi_lamp *lamp)
-{
-    uint32_t cap = scene->prepared.solids[solid].cap;
-    if (!lamp->directional)
-        return gnoi_solid_outside(scene, solid, lamp->position);
-    return cap == GNOI_NONE || v3_dot(v3_from(scene->prepared.polys[cap].n), lamp->to_light) < 0;
-}
-
 /* Finds which closed solids have lamp and eye outside. */
 static void set_halved(const gno_scene *scene, const gnoi_view *view, gnoi_shadow_cache *cache)
 {
@@ -60,7 +52,7 @@ static void set_halved(const gno_scene *scene, const gnoi_view *view, gnoi_shado
         for (size_t i = 0; i < cache->lamp_count; i++) {
             /* where shadows weaken with distance each of the two sides of a solid counts for itself */
             if (!(cache->lamps[i].softness > 0))
-                cache->halved[i * cache->solid_count + k] = (unsigned char)lamp_outside(scene, k, &cache->lamps[i]);
+                cache->halved[i * cache->solid_count + k] = (unsigned char)gnoi_lamp_outside(scene, k, &cache->lamps[i]);
         }
     }
 }

@@ -65,3 +65,11 @@ void gnoi_lamps_fill(const gno_scene *scene, gnoi_lamp *lamps)
         lamps += gnoi_lamp_count(light);
     }
 }
+
+int gnoi_lamp_outside(const gno_scene *scene, size_t solid, const gnoi_lamp *lamp)
+{
+    uint32_t cap = scene->prepared.solids[solid].cap;
+    if (!lamp->directional)
+        return gnoi_solid_outside(scene, solid, lamp->position);
+    return cap == GNOI_NONE || v3_dot(v3_from(scene->prepared.polys[cap].n), lamp->to_light) < 0;
+}

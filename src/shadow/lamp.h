@@ -21,4 +21,7 @@ void gnoi_lamps_of(const gno_light *light, gnoi_lamp *lamps);
 /* lamps: room for gnoi_lamps_count. */
 void gnoi_lamps_fill(const gno_scene *scene, gnoi_lamp *lamps);
 
+/* 1 when the lamp is certainly outside a closed solid, and on the inner side of its cap. */
+int gnoi_lamp_outside(const gno_scene *scene, size_t solid, const gnoi_lamp *lamp);
+
 #endif

@@ -11,6 +11,7 @@
 #include "base/sort.h"
 #include "base/tolerance.h"
 #include "base/vector.h"
+#include "shadow/lamp.h"
 
 #include <float.h>
 #include <stdlib.h>
@@ -34,7 +35,7 @@ gno_status gnoi_search_make(const gno_scene *scene, const gnoi_lamp *lamp, int t
         return GNO_ERROR_MEMORY;
     for (size_t i = 0; i < prep->solid_count; i++)
         if (prep->solids[i].closed)
-            search->outside[i] = (unsigned char)(lamp->directional || gnoi_solid_outside(scene, i, lamp->position));
+            search->outside[i] = (unsigned char)gnoi_lamp_outside(scene, i, lamp);
     status = gnoi_facets_build(scene, &search->facets);
     if (!status)
         status = gnoi_packets_build(scene, lamp, threads, &search->packets);

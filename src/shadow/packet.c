@@ -10,9 +10,6 @@
 
 #include <float.h>
 #include <string.h>
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 #define CHUNK 4096          /* polygons */
 #define RUN_PACKETS (GNOI_RUN / GNOI_PACKET)
@@ -268,7 +265,7 @@ static void set_box(gnoi_packet_boxes *node, size_t k, const gnoi_lbox *box)
 static int casts(const gno_scene *scene, const gnoi_poly *poly)
 {
     const double *t = scene->materials[poly->material].transmission;
-    return poly->opaque || !(t[0] >= 1 && t[1] >= 1 && t[2] >= 1);
+    return !poly->detail && (poly->opaque || !(t[0] >= 1 && t[1] >= 1 && t[2] >= 1));
 }
 
 static void fill_corners(const gno_scene *scene, gnoi_packet *packet)
@@ -438,26 +435,6 @@ void gnoi_packets_free(gno_context *context, gnoi_packets *packets)
 }
 
 /* ---- searching ---------------------------------------------------------------------------------------------------- */
-
-unsigned gnoi_packet_meet(const gnoi_packet_boxes *node, const gnoi_lbox *q)
-{
-    unsigned mask = 0;
-#if defined(__SSE2__)
-    __m128 u0 = _mm_set1_ps(q->u0), u1 = _mm_set1_ps(q->u1), w0 = _mm_set1_ps(q->v0), w1 = _mm_set1_ps(q->v1);
-    __m128 z1 = _mm_set1_ps(q->z1);
-    for (int k = 0; k < GNOI_PACKET; k += 4) {
-        __m128 u = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->u0 + k), u1), _mm_cmpge_ps(_mm_loadu_ps(node->u1 + k), u0));
-        __m128 w = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->v0 + k), w1), _mm_cmpge_ps(_mm_loadu_ps(node->v1 + k), w0));
-        __m128 z = _mm_cmple_ps(_mm_loadu_ps(node->z0 + k), z1);
-        mask |= (unsigned)_mm_movemask_ps(_mm_and_ps(_mm_and_ps(u, w), z)) << k;
-    }
-#else
-    for (int k = 0; k < GNOI_PACKET; k++)
-        mask |= (unsigned)(node->u0[k] <= q->u1 && node->u1[k] >= q->u0 && node->v0[k] <= q->v1 && node->v1[k] >= q->v0 &&
-                           node->z0[k] <= q->z1) << k;
-#endif
-    return mask;
-}
 
 int gnoi_packets_find(gno_context *context, const gnoi_packets *packets, const gnoi_lbox *box, gnoi_packet_list *found)
 {

@@ -13,6 +13,9 @@
 
 #include "scene/scene.h"
 #include "shadow/frame.h"
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
 
 #define GNOI_PACKET 8
 #define GNOI_PACKET_LEVELS 12
@@ -68,7 +71,25 @@ typedef struct gnoi_packet_list {
 int gnoi_packets_find(gno_context *context, const gnoi_packets *packets, const gnoi_lbox *box, gnoi_packet_list *found);
 
 /* Bit k: entry k's box meets `box` and does not begin behind its farthest depth. */
-unsigned gnoi_packet_meet(const gnoi_packet_boxes *boxes, const gnoi_lbox *box);
+static inline unsigned gnoi_packet_meet(const gnoi_packet_boxes *node, const gnoi_lbox *q)
+{
+    unsigned mask = 0;
+#if defined(__SSE2__)
+    __m128 u0 = _mm_set1_ps(q->u0), u1 = _mm_set1_ps(q->u1), w0 = _mm_set1_ps(q->v0), w1 = _mm_set1_ps(q->v1);
+    __m128 z1 = _mm_set1_ps(q->z1);
+    for (int k = 0; k < GNOI_PACKET; k += 4) {
+        __m128 u = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->u0 + k), u1), _mm_cmpge_ps(_mm_loadu_ps(node->u1 + k), u0));
+        __m128 w = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->v0 + k), w1), _mm_cmpge_ps(_mm_loadu_ps(node->v1 + k), w0));
+        __m128 z = _mm_cmple_ps(_mm_loadu_ps(node->z0 + k), z1);
+        mask |= (unsigned)_mm_movemask_ps(_mm_and_ps(_mm_and_ps(u, w), z)) << k;
+    }
+#else
+    for (int k = 0; k < GNOI_PACKET; k++)
+        mask |= (unsigned)(node->u0[k] <= q->u1 && node->u1[k] >= q->u0 && node->v0[k] <= q->v1 && node->v1[k] >= q->v0 &&
+                           node->z0[k] <= q->z1) << k;
+#endif
+    return mask;
+}
 
 /* Up to four points on the polygon's plane whose hull contains it: its own corners where it has no more (1 is returned in *exact), a
  * rectangle otherwise. Returns their number. */

@@ -148,7 +148,7 @@ static void check_receiver(const flat *flats, const int *good, size_t count, siz
         if (!random_point(&flats[r], state, p)) return;
         for (size_t k = 0; k < count; k++) {
             gno_material material;
-            if (k == r || !good[k]) continue;
+            if (k == r || !good[k] || flats[k].polygon.detail_of >= 0) continue; /* details cast nothing */
             before |= blocks(&flats[k], &flats[r], p, light, 1e-9);
             if (!blocks(&flats[k], &flats[r], p, light, 1e-4)) continue;
             assert_int_equal(gno_scene_material(scene, flats[k].polygon.material, &material), GNO_OK);

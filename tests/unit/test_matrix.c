@@ -167,6 +167,42 @@ static void test_box(void **state)
     }
 }
 
+/* A box without its underside is closed for light from above; light from below comes in, and its inner sides are lit. */
+static void test_open_box(void **state)
+{
+    (void)state;
+    static const double p[8][3] = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {-1, -1, 2}, {1, -1, 2}, {1, 1, 2}, {-1, 1, 2}};
+    static const int corners[] = {4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7};
+    static const unsigned rings[] = {0, 4, 8, 12, 16, 20};
+    for (int below = 0; below < 4; below++) {
+        gno_scene *scene = empty_scene();
+        gno_mesh_def mesh = gno_mesh_def_default();
+        gno_matrix_info info;
+        mesh.vertex_count = 8;
+        mesh.positions = &p[0][0];
+        mesh.polygon_count = mesh.ring_count = 5;
+        mesh.ring_start = rings;
+        mesh.corner_count = 20;
+        mesh.corner_vertex = corners;
+        assert_int_equal(gno_scene_add_mesh(scene, &mesh, NULL), GNO_OK);
+        if (below < 2) add_sun(scene, 0.3, 0.2, below ? 1 : -1);
+        else add_lamp(scene, -3, -2, below > 2 ? -10 : 10);
+        gno_matrix *m = build(scene);
+        assert_int_equal(gno_matrix_get_info(m, &info), GNO_OK);
+        if (below % 2) { /* the inner top is lit but for what the walls shade */
+            gno_matrix_column top;
+            assert_int_equal(gno_matrix_get_column(m, 0, &top), GNO_OK);
+            assert_true(top.own && top.shade == GNO_SHADE_PART);
+            assert_int_equal(info.own, 0);
+        } else {
+            assert_int_equal(info.own, 2);
+            assert_int_equal(info.none, 3);
+        }
+        gno_matrix_destroy(m);
+        gno_scene_destroy(scene);
+    }
+}
+
 static void test_lamp_in_room(void **state)
 {
     (void)state;
@@ -433,6 +469,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_plate_over_floor), cmocka_unit_test(test_own_shadow),         cmocka_unit_test(test_box),
+        cmocka_unit_test(test_open_box),
         cmocka_unit_test(test_lamp_in_room),     cmocka_unit_test(test_holes_and_concave),  cmocka_unit_test(test_source_numbers),
         cmocka_unit_test(test_area_light),       cmocka_unit_test(test_nothing),            cmocka_unit_test(test_threads_and_demand),
         cmocka_unit_test(test_scene_that_changed), cmocka_unit_test(test_from_columns),     cmocka_unit_test(test_memory),
