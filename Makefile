@@ -5,7 +5,9 @@
 #   make test       the same, then all tests; the last line counts them
 #   make gallery    docs/gallery.md with a small picture of every scene
 #   make bench      measurements        make check-asan     tests under the address and undefined-behaviour sanitizers
-#   make install    PREFIX, DESTDIR     make check-headers  the public headers in every C and C++ they promise
+#   make install    PREFIX, DESTDIR     make check-tsan     threaded tests under the thread sanitizer
+#   make check-port     the engine with 32 bits and on a big-endian machine, by cross compilers and qemu
+#   make check-headers  the public headers in every C and C++ they promise
 
 # ---- yours to change, here or on the command line ----------------------------------------------------------------
 ifeq ($(origin CC),default)
@@ -70,7 +72,7 @@ STATIC := $(BUILD)/libgnomon.a $(BUILD)/libgnomon-io.a
 SHARED := $(BUILD)/libgnomon.so $(BUILD)/libgnomon-io.so
 TOOL   := $(if $(CLI_SRC),$(BUILD)/gnomon)
 
-.PHONY: watertight all demo demo-pictures test test-run check-asan asan-run bench install uninstall deps clean check-headers FORCE
+.PHONY: watertight all demo demo-pictures test test-run check-asan asan-run check-tsan tsan-run check-port bench install uninstall deps clean check-headers FORCE
 .DELETE_ON_ERROR:
 .SUFFIXES:
 
@@ -198,6 +200,19 @@ check-asan:
 asan-run: tests
 	@BUILD='$(BUILD)' ASAN_OPTIONS=allocator_may_return_null=1:$$ASAN_OPTIONS \
 	 sh tests/run.sh $(BUILD)/logs $(TEST_BIN)
+
+# The programs that work on several threads, under the thread sanitizer.
+TSAN_TESTS := $(addprefix $(BUILD)/tests/,unit/test_embedding unit/test_stream unit/test_layers property/test_determinism)
+
+check-tsan:
+	+@$(SUBMAKE) $(JOBS) BUILD=build/tsan CFLAGS='-O1 -g -fno-omit-frame-pointer' SANITIZE='-fsanitize=thread' tsan-run
+
+tsan-run: $(TSAN_TESTS)
+	@BUILD='$(BUILD)' sh tests/run.sh $(BUILD)/logs $(TSAN_TESTS)
+
+# Other kinds of machines: 32 bits, big endian. It builds its own objects.
+check-port:
+	@CC='$(CC)' bash tests/port/run.sh
 
 # BENCH: what to measure; tests/bench/bench.sh tells the words (quick, matrix, a scene, ...)
 bench: all

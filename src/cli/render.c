@@ -275,7 +275,7 @@ static int no_room(gno_context *context, const char *what, const gno_image_def *
 {
     char text[160], bytes[32] = "";
     if (size > 0.0) {
-        snprintf(bytes, sizeof bytes, " (%.1f GB)", size * 1e-9);
+        snprintf(bytes, sizeof bytes, " (%.1f %s)", size < 1e9 ? size * 1e-6 : size * 1e-9, size < 1e9 ? "MB" : "GB");
     }
     snprintf(text, sizeof text, "out of memory for %s of %d x %d%s", what, image->width, image->height, bytes);
     gno_context_fail(context, GNO_ERROR_MEMORY, text);

@@ -51,21 +51,23 @@ typedef struct spans {
 
 /* ---- one tile, on any thread -------------------------------------------------------------------------------------- */
 
-/* Appends a part of one span and light; slivers that are leaks go dark, and what is like the part before joins it. */
+/* Appends a part of one span and light. Slivers, which rounding leaves where a caster touches its receiver, go to a neighbour. */
 static int add_part(gno_context *context, record *r, size_t first, const gno_span_part *part)
 {
-    gno_span_part *last;
-    gno_span_part added = *part;
-    if (added.x1 - added.x0 < (double)GNOI_LEAK_LENGTH)
-        added.light[0] = added.light[1] = added.light[2] = 0;
-    last = r->part_count > first ? &r->parts[r->part_count - 1] : NULL;
-    if (last && memcmp(last->light, added.light, sizeof last->light) == 0) {
-        last->x1 = added.x1;
+    gno_span_part *last = r->part_count > first ? &r->parts[r->part_count - 1] : NULL;
+    double least = (double)GNOI_LEAK_LENGTH;
+    if (last && (part->x1 - part->x0 < least || memcmp(last->light, part->light, sizeof last->light) == 0)) {
+        last->x1 = part->x1;
+        return 1;
+    }
+    if (last && last->x1 - last->x0 < least) { /* the span's first */
+        memcpy(last->light, part->light, sizeof last->light);
+        last->x1 = part->x1;
         return 1;
     }
     if (!gnoi_reserve(context, (void **)&r->parts, &r->part_capacity, r->part_count + 1, sizeof *r->parts))
         return 0;
-    r->parts[r->part_count++] = added;
+    r->parts[r->part_count++] = *part;
     return 1;
 }
 

@@ -56,13 +56,15 @@ static int fill_buckets(const gnoi_prepared *prep, const unsigned char *taken, s
             visit_edges(prep, i, b, 0);
     for (size_t v = 2; v < b->vertex_count + 2; v++)
         b->start[v] += b->start[v - 1];
+    if (gnoi_stopped(b->context))
+        return 0;
     b->halves = gnoi_malloc(b->context, b->half_count, sizeof *b->halves);
     if (!b->halves)
         return 0;
     for (uint32_t i = 0; i < count; i++)
         if (taken[i])
             visit_edges(prep, i, b, 1);
-    return 1;
+    return !gnoi_stopped(b->context);
 }
 
 /* By the higher vertex. Buckets hold a handful, but for the tips of large fans: Shell's gaps keep those from growing quadratic. */
@@ -113,6 +115,8 @@ static int cancel(gnoi_boundary *c, const buckets *b)
             if (!keep_rest(c, b->context, v, h + i, run))
                 return 0;
         }
+        if (gnoi_stopped_at(b->context, v))
+            return 0;
     }
     return 1;
 }

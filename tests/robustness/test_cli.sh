@@ -49,6 +49,9 @@ run --help; verdict 'help' eval 'done_well && grep -q "^usage: gnomon" out && gr
 run render --help; verdict 'help of render' eval 'done_well && grep -q -- --size out'
 run help info; verdict 'help of info' eval 'done_well && grep -q -- --json out'
 run --version; verdict 'version' eval 'done_well && grep -Eq "^gnomon [0-9]+\.[0-9]+\.[0-9]+$" out'
+run render scene.yaml -o memory.pfm --memory 20K; verdict 'a memory ceiling' eval 'refused "memory ceiling of" && [ ! -e memory.pfm ]'
+run render scene.yaml -o memory.pfm --memory 0.5G; verdict 'a memory ceiling high enough' eval 'done_well && [ -s memory.pfm ]'
+run render scene.yaml -o memory.pfm --memory 5X; verdict 'a memory ceiling that is none' wrong_usage
 run; verdict 'no command' wrong_usage
 run rendr scene.yaml; verdict 'misspelt command' eval 'wrong_usage && grep -q "did you mean \"render\"" err'
 run render scene.yaml --sizes 3x3; verdict 'misspelt option' eval 'wrong_usage && grep -q "did you mean \"--size\"" err'

@@ -58,6 +58,24 @@ same_picture() {
     ./draw && mv draw.ppm c.ppm && ./draw-cxx && cmp c.ppm draw.ppm
 }
 
+row_by_row() { # a picture with at least the background, lit and dark stone in it
+    ./rows && [ "$(head -n 2 rows.ppm | tr '\n' ' ')" = 'P6 320 200 ' ] && [ "$(wc -c <rows.ppm)" -eq $((15 + 3 * 320 * 200)) ] &&
+        [ "$(tail -c +16 rows.ppm | od -An -v -tu1 -w3 | sort -u | wc -l)" -ge 3 ]
+}
+
+streams() {
+    ./"$1" >out && printf '%s\n' '[0.00, 42.36) polygon 0, depth 8.02 to 8.02: [0.00, 42.36) lit' \
+        '[42.36, 61.40) polygon 1, depth 4.82 to 8.02: [42.36, 61.40) dark' \
+        '[61.40, 100.00) polygon 0, depth 8.02 to 8.02: [61.40, 72.90) dark [72.90, 100.00) lit' \
+        'of all that is seen 83.93 % is lit' | diff - out
+}
+
+tower() {
+    # shellcheck disable=SC2086
+    ${CXX:-g++} -std=c++98 $strict -I"$root/include" "$examples/tower.cpp" -o tower "$build/libgnomon.a" -lm -pthread &&
+        ./tower >out && grep -qx 'depth in the middle: 7.317' out
+}
+
 # The block of the README that begins with draw.c's first line.
 shown() {
     awk 'on && /^```/ { exit } on || /^\/\* draw\.c/ { on = 1; print }' "$root/README.md" | diff "$examples/draw.c" -
@@ -71,7 +89,14 @@ verdict 'clip.c is C89' c89 clip "$build/libgnomon.a"
 verdict 'clip.c clips' clips clip
 verdict 'files.c is C89' c89 files "$build/libgnomon-io.a" "$build/libgnomon.a" $io_libs -lOpenEXRCore
 verdict 'files.c loads and writes' loads
+verdict 'rows.c is C89' c89 rows "$build/libgnomon.a"
+verdict 'rows.c draws row by row' row_by_row
+verdict 'spans.c is C89' c89 spans "$build/libgnomon.a"
+verdict 'spans.c streams' streams spans
 if command -v "${CXX:-g++}" >/dev/null; then
+    verdict 'tower.cpp is C++98 and sees' tower
+    verdict 'spans.c is C++98' cxx98 spans
+    verdict 'spans.c streams from C++' streams spans-cxx
     verdict 'draw.c is C++98' cxx98 draw
     verdict 'draw.c draws the same from C++' same_picture
     verdict 'split.c is C++98' cxx98 split
