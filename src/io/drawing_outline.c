@@ -2,7 +2,8 @@
  *
  * Shapes fit together, so an edge that two of them share runs once each way: such pairs cancel, and what is left bounds their
  * union. The picture's frame, which runs the other way round, is cut where outlines touch it and cancels likewise. Where a corner of
- * one shape lies within an edge of another nothing cancels there: flat rings stay, and are dropped for having no area.
+ * one shape lies within an edge of another, that edge is cut there first. What is flat all the same is dropped: viewers that make
+ * every shape at least a pixel wide would show it.
  */
 #include "io/drawing.h"
 
@@ -11,6 +12,9 @@
 
 /* Rings of less than this area, in pixels squared, show nothing. */
 #define LEAST_RING 1e-3
+
+/* Corners this near to an edge, in units, lie on it: both were rounded once. */
+#define ON_EDGE 2.0
 
 /* An edge with its ends in order; `turns` says how many times it runs from a to b less how many times from b to a. */
 typedef struct side {
@@ -104,19 +108,14 @@ static int add_frame(const gnoi_drawing *d, gnoi_mesh_array *sides)
     return done;
 }
 
-static int by_start(const void *a, const void *b)
-{
-    const side *s = a, *t = b;
-    const int order = compare_dots(s->a, t->a);
-    return order != 0 ? order : compare_dots(s->b, t->b);
-}
-
-/* Leaves of each edge what does not cancel, as edges from a to b, sorted by a. */
+/* Leaves of each edge what does not cancel, as edges from a to b, sorted by a, then b. */
 static void cancel(gnoi_mesh_array *sides)
 {
     side *s = sides->data;
     size_t count = 0;
-    qsort(s, sides->count, sizeof *s, by_ends);
+    if (sides->count > 1) {
+        qsort(s, sides->count, sizeof *s, by_ends);
+    }
     for (size_t i = 0, n; i < sides->count; i += n) {
         side sum = s[i];
         for (n = 1; i + n < sides->count && by_ends(&s[i], &s[i + n]) == 0; n++) {
@@ -128,7 +127,105 @@ static void cancel(gnoi_mesh_array *sides)
         }
     }
     sides->count = count;
-    qsort(s, count, sizeof *s, by_start);
+    if (count > 1) {
+        qsort(s, count, sizeof *s, by_ends);
+    }
+}
+
+/* A corner on an edge, and how far along. */
+typedef struct stop {
+    gnoi_dot dot;
+    double along;
+} stop;
+
+static int by_way(const void *a, const void *b)
+{
+    const stop *s = a, *t = b;
+    return s->along != t->along ? (s->along > t->along) - (s->along < t->along) : compare_dots(s->dot, t->dot);
+}
+
+/* The first of the corners, sorted, that is not left of x. */
+static size_t first_right_of(const gnoi_mesh_array *corners, int64_t x)
+{
+    size_t low = 0, high = corners->count;
+    while (low < high) {
+        const size_t middle = low + (high - low) / 2;
+        if (gnoi_dots(corners)[middle].x < x) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    return low;
+}
+
+/* Collects the corners that lie within an edge, in order. */
+static int find_stops(gno_context *context, const side *s, const gnoi_mesh_array *corners, gnoi_mesh_array *stops)
+{
+    const double dx = (double)(s->b.x - s->a.x), dy = (double)(s->b.y - s->a.y), length2 = dx * dx + dy * dy;
+    const int64_t right = s->a.x > s->b.x ? s->a.x : s->b.x, left = s->a.x + s->b.x - right, slack = (int64_t)ON_EDGE;
+    stops->count = 0;
+    for (size_t i = first_right_of(corners, left - slack); i < corners->count && gnoi_dots(corners)[i].x <= right + slack; i++) {
+        const gnoi_dot dot = gnoi_dots(corners)[i];
+        const double px = (double)(dot.x - s->a.x), py = (double)(dot.y - s->a.y), along = px * dx + py * dy, off = px * dy - py * dx;
+        if (along <= 0 || along >= length2 || off * off > ON_EDGE * ON_EDGE * length2 || compare_dots(dot, s->a) == 0 ||
+            compare_dots(dot, s->b) == 0) {
+            continue;
+        }
+        if (!gnoi_mesh_array_room(context, stops, 1, sizeof(stop))) {
+            return 0;
+        }
+        const stop fresh = {dot, along};
+        ((stop *)stops->data)[stops->count++] = fresh;
+    }
+    if (stops->count > 1) {
+        qsort(stops->data, stops->count, sizeof(stop), by_way);
+    }
+    return 1;
+}
+
+/* Puts the edges, cut at every corner of others that lies on them, into `cut`. */
+static int cut_at_corners(gno_context *context, const gnoi_mesh_array *sides, gnoi_mesh_array *corners, gnoi_mesh_array *stops,
+                          gnoi_mesh_array *cut)
+{
+    const side *s = sides->data;
+    if (!gnoi_mesh_array_room(context, corners, sides->count, sizeof(gnoi_dot))) {
+        return 0;
+    }
+    /* Sorted by where they begin, and what is left begins at every corner. */
+    for (size_t i = 0; i < sides->count; i++) {
+        if (i == 0 || compare_dots(s[i - 1].a, s[i].a) != 0) {
+            ((gnoi_dot *)corners->data)[corners->count++] = s[i].a;
+        }
+    }
+    for (size_t i = 0; i < sides->count; i++) {
+        gnoi_dot from = s[i].a;
+        if (!find_stops(context, &s[i], corners, stops)) {
+            return 0;
+        }
+        for (size_t k = 0; k <= stops->count; k++) {
+            const gnoi_dot to = k < stops->count ? ((const stop *)stops->data)[k].dot : s[i].b;
+            if (compare_dots(from, to) != 0 && !add_side(context, cut, from, to)) {
+                return 0;
+            }
+            from = to;
+        }
+    }
+    return 1;
+}
+
+/* Cancels, cuts what is left at the corners, and cancels again. */
+static int cancel_all(gno_context *context, gnoi_mesh_array *sides)
+{
+    gnoi_mesh_array corners = {NULL, 0, 0}, stops = {NULL, 0, 0}, cut = {NULL, 0, 0};
+    cancel(sides);
+    const int done = cut_at_corners(context, sides, &corners, &stops, &cut);
+    gnoi_mesh_array_free(context, &corners, sizeof(gnoi_dot));
+    gnoi_mesh_array_free(context, &stops, sizeof(stop));
+    gnoi_mesh_array_free(context, sides, sizeof(side));
+    *sides = cut;
+    cancel(sides);
+    return done;
 }
 
 static size_t find_start(const gnoi_mesh_array *sides, gnoi_dot dot)
@@ -195,9 +292,8 @@ static int join(gnoi_drawing *d, const gnoi_mesh_array *sides, size_t *taken)
 gno_status gnoi_drawing_outline(gnoi_drawing *d)
 {
     gnoi_mesh_array sides = {NULL, 0, 0};
-    int done = add_shapes(d, &sides) && add_frame(d, &sides);
+    int done = add_shapes(d, &sides) && add_frame(d, &sides) && cancel_all(d->context, &sides);
     if (done) {
-        cancel(&sides);
         const size_t bytes = (sides.count + 1) * sizeof(size_t);
         size_t *taken = gno_context_realloc(d->context, NULL, 0, bytes);
         done = taken != NULL;
