@@ -442,7 +442,8 @@ typedef struct gno_layers {
 /* No layer wanted. */
 GNO_API gno_layers gno_layers_default(void);
 /* scanline: exact spans on sample lines, the fastest; weiler_atherton: visible pieces as polygons (gnomon_pieces.h), painted with exact
- * area coverage and shaded alike. `lines`, `base_lines` and `refine_above` concern the first alone. */
+ * area coverage and shaded alike. `lines`, `base_lines` and `refine_above` concern the first alone; a scene whose shadows weaken with
+ * distance (softness) or fall through holes of textures has sample lines in either case, and a warning says so. */
 typedef enum gno_engine { GNO_ENGINE_SCANLINE = 0, GNO_ENGINE_WEILER_ATHERTON = 1 } gno_engine;
 
 typedef struct gno_render_def {

@@ -68,6 +68,9 @@ static gno_status check_def(gno_context *context, const gno_render_def *def)
     return def->layers ? check_layers(context, def->layers) : GNO_OK;
 }
 
+/* Enough that no edge shows the difference to exact coverage. */
+#define LINES_FOR_PIECES 16
+
 typedef struct tile_job {
     gnoi_frame_job *frame;
     const gnoi_bands *bands;
@@ -298,8 +301,19 @@ static int make_pixels(void *user, gnoi_tile *tile, size_t index)
     return gnoi_tile_render(tile, index);
 }
 
+/* Sample lines, all of them everywhere, in the place of pieces that cannot bound the scene's shadows. */
+static gno_render_def lines_for_pieces(gno_context *context, gno_render_def def)
+{
+    gnoi_warn(context, "shadows that weaken with distance, or of textures with holes, have no edges: the picture is made by %d sample lines",
+              LINES_FOR_PIECES);
+    def.engine = GNO_ENGINE_SCANLINE;
+    def.lines = def.base_lines = LINES_FOR_PIECES;
+    return def;
+}
+
 gno_status gno_render(gno_scene *scene, const gno_render_def *def, float *rgb, gno_stats *stats)
 {
+    gno_render_def used;
     gnoi_bands whole;
     if (!scene)
         return GNO_ERROR_ARGUMENT;
@@ -308,5 +322,9 @@ gno_status gno_render(gno_scene *scene, const gno_render_def *def, float *rgb, g
     memset(&whole, 0, sizeof whole);
     whole.make = make_pixels;
     whole.rgb = rgb;
+    if (def && def->engine == GNO_ENGINE_WEILER_ATHERTON && !gnoi_shadows_have_edges(scene)) {
+        used = lines_for_pieces(scene->context, *def);
+        def = &used;
+    }
     return gnoi_render(scene, def, &whole, stats);
 }

@@ -468,13 +468,15 @@ static gno_status work_on_tiles(paint_job *job, gno_stats *stats)
     return status;
 }
 
-static void warn_of_softness(const gno_scene *scene)
+int gnoi_shadows_have_edges(const gno_scene *scene)
 {
     for (size_t i = 0; i < scene->light_count; i++)
-        if (scene->lights[i].light.softness > 0) {
-            gnoi_warn(scene->context, "light \"%s\": pieces know no softness, its shadows stay dark", scene->lights[i].name);
-            return;
-        }
+        if (scene->lights[i].light.softness > 0)
+            return 0;
+    for (size_t i = 0; i < scene->material_count; i++)
+        if (gnoi_has_holes(scene, &scene->materials[i]))
+            return 0;
+    return 1;
 }
 
 /* The set of pieces, and what it has beside, onto the picture. */
@@ -483,7 +485,6 @@ static gno_status job_make(paint_job *job, const gnoi_frame_job *frame, const gn
     gno_status status;
     memset(job, 0, sizeof *job);
     job->frame = frame;
-    warn_of_softness(frame->scene);
     job->seen.pieces = pieces;
     job->beside.pieces = gnoi_pieces_beside(pieces);
     status = gnoi_piece_bins_build(frame->scene, &frame->view, pieces, &job->seen.bins);
@@ -548,6 +549,8 @@ gno_status gnoi_paint_means(gnoi_frame_job *frame, const gno_pieces *pieces, dou
     gno_context *context = frame->scene->context;
     paint_job job;
     gno_status status = job_make(&job, frame, pieces);
+    if (!gnoi_shadows_have_edges(frame->scene))
+        gnoi_warn(context, "shadows that weaken with distance or fall through the holes of textures are taken as whole ones");
     if (!status) {
         job.shares = gnoi_calloc(context, job.seen.bins.item_count, sizeof *job.shares);
         status = job.shares ? work_on_tiles(&job, NULL) : GNO_ERROR_MEMORY;
