@@ -3,9 +3,11 @@
  * Place: tree of the file with its settings -> sections -> gno_scene_add_..., gno_scene_set_...
  *
  *   scene_yaml.c    whole file: order of sections, version, image, ambient
- *   scene_camera.c  camera            scene_material.c  materials; scene_texture.c: their texture and bump
+ *   scene_camera.c  camera            scene_material.c  materials; scene_texture.c: their texture and bump,
+ *                                     scene_procedural.c where these are patterns
  *   scene_light.c   lights            scene_object.c    objects: reading, names, details' priorities
- *                                     scene_shape.c     one object's polygons: mesh file, polygon, sphere, terrain
+ *                                     scene_shape.c     one object's polygons: mesh file, polygon, sphere;
+ *                                     scene_terrain.c: terrain
  *                                     scene_transform.c transform lists
  *   scene_load.c    gno_scene_load; scene_mesh.c: a mesh file as a scene
  * Everything is read and checked before the first mesh file is opened.
