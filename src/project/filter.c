@@ -533,6 +533,13 @@ typedef struct block {
     int column[GNOI_COVERAGE_CELLS], row[GNOI_COVERAGE_CELLS]; /* wrapped */
 } block;
 
+/* Whether cells i0 .. i0 + count - 1 along an axis are all of the same width: within the picture, or in any if it is so many of them. */
+static int is_on_grid(const filter *f, int i0, int count, int elements, int level)
+{
+    int repeats = f->how->wrap == GNO_WRAP_REPEAT || f->how->wrap == GNO_WRAP_MIRROR;
+    return (i0 >= 0 && i0 + count <= elements >> level) || (repeats && (elements & ((1 << level) - 1)) == 0);
+}
+
 /* The cells of `level` under the quad; 0 where they are too many, or where the level's cells do not lie on one grid: beside the
  * picture, and where its last cells are narrower than the others. */
 static int find_block(const filter *f, const quad *q, int level, block *b)
@@ -546,8 +553,7 @@ static int find_block(const filter *f, const quad *q, int level, block *b)
     b->rows = floor_of(q->high_t * k) - b->j0 + 1;
     if (b->columns > GNOI_COVERAGE_CELLS || b->rows > GNOI_COVERAGE_CELLS)
         return 0;
-    if (level > 0 && (b->i0 < 0 || b->j0 < 0 || b->i0 + b->columns > f->image->width >> level ||
-                      b->j0 + b->rows > f->image->height >> level))
+    if (level > 0 && (!is_on_grid(f, b->i0, b->columns, f->image->width, level) || !is_on_grid(f, b->j0, b->rows, f->image->height, level)))
         return 0;
     for (int i = 0; i < b->columns; i++)
         if ((b->column[i] = wrapped(b->i0 + i, w, f->how->wrap)) < 0)

@@ -76,11 +76,16 @@ static void slope_at(const gnoi_image *image, const gno_texture *how, int level,
     double x = s * l->width - 1, y = t * l->height - 1, fx = floor(x), fy = floor(y), a = x - fx, b = y - fy;
     double ha = a < 0.5 ? a + 0.5 : a - 0.5, hb = b < 0.5 ? b + 0.5 : b - 0.5; /* of the middle row and column of interpolation */
     int ia = a < 0.5 ? 0 : 1, ib = b < 0.5 ? 0 : 1;
+    int i0 = (int)fx, j0 = (int)fy, inside = i0 >= 0 && i0 + 2 < l->width && j0 >= 0 && j0 + 2 < l->height, column[3], row_of[3];
     float v[3][3];
+    for (int i = 0; i < 3; i++) {
+        column[i] = inside ? i0 + i : wrapped(i0 + i, l->width, how->wrap);
+        row_of[i] = inside ? j0 + i : wrapped(j0 + i, l->height, how->wrap);
+    }
     for (int j = 0; j < 3; j++) {
-        const float *row = l->height_of + (size_t)wrapped((int)fy + j, l->height, how->wrap) * (size_t)l->width;
+        const float *row = l->height_of + (size_t)row_of[j] * (size_t)l->width;
         for (int i = 0; i < 3; i++)
-            v[j][i] = row[wrapped((int)fx + i, l->width, how->wrap)];
+            v[j][i] = row[column[i]];
     }
     slope[0] = slope[1] = 0;
     for (int k = 0; k < 2; k++) {
@@ -104,11 +109,12 @@ static void slope_of(const gnoi_image *image, const gno_texture *how, const fram
     }
     part = cells > 1 ? cells - 1 : 0;
     part = part < 1 ? part : 1;
-    slope_at(image, how, level, s, t, slope);
+    if (part < 1 || level + 1 == image->level_count)
+        slope_at(image, how, level, s, t, slope);
     if (part > 0 && level + 1 < image->level_count)
         slope_at(image, how, level + 1, s, t, coarse);
     for (int k = 0; k < 2 && part > 0; k++)
-        slope[k] += part * (coarse[k] - slope[k]);
+        slope[k] = part < 1 ? slope[k] + part * (coarse[k] - slope[k]) : coarse[k];
 }
 
 static vec3 raise(const gnoi_image *image, const gno_bump *bump, const frame *f, vec3 n)
