@@ -7,6 +7,7 @@
 #   quick            room, bunny and a small town at 1920x1080, a small matrix: some minutes
 #   matrix, small, views, or a scene (room bunny sponza town-1k town-10k town-100k town-1m dragon): that alone
 #   growth           the tables of docs/growth.md (growth.sh)
+#   textures         what textures and bumps cost on Sponza (textures.sh)
 # Embree and POV-Ray are installed from Debian when they are missing (INSTALL=0: not); what cannot be had is skipped and said so.
 #   GNOMON  the tool (build/gnomon)     REPEATS  runs of each, alternating (3)     OUT  where files go and references are kept (build/bench)
 #   GNOMON_SHARED  the folder with data/ and peers/ (../shared)     CC  compiler (cc)
@@ -16,7 +17,10 @@ cd "$(dirname "$0")/../.."
 export GNOMON=${GNOMON:-$PWD/build/gnomon} SHARED=${GNOMON_SHARED:-../shared} OUT=${OUT:-build/bench}
 words=()
 for word in "$@"; do
-    if [ "$word" = growth ]; then bash tests/bench/growth.sh || status=1; else words+=("$word"); fi
+    case $word in
+        growth | textures) bash "tests/bench/$word.sh" || status=1 ;;
+        *) words+=("$word") ;;
+    esac
 done
 [ $# -gt 0 ] && [ ${#words[@]} -eq 0 ] && exit "${status:-0}"
 [ -x "$GNOMON" ] || { echo "SKIP bench: $GNOMON is missing: run make first"; exit 0; }
