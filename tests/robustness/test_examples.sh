@@ -54,6 +54,11 @@ loads() {
     ./files "$root/scenes/crossing.yaml" out.png && [ -s out.png ] && ! ./files missing.yaml out.png
 }
 
+asks() { # the wall's lit height is that below the overhang's shadow, 3.5 less the sun's slope; at sun 0 it ends where the wall does
+    ./"$1" >out && printf '%s\n' "sun 0: 12.000000 of the wall's 12, proof holds" "sun 1: 10.000000 of the wall's 12, proof holds" \
+        "sun 2: 8.000000 of the wall's 12, proof holds" "sun 3: 4.000000 of the wall's 12, proof holds" | diff - out
+}
+
 same_picture() {
     ./draw && mv draw.ppm c.ppm && ./draw-cxx && cmp c.ppm draw.ppm
 }
@@ -87,6 +92,8 @@ verdict 'split.c is C89' c89 split "$build/libgnomon.a"
 verdict 'split.c splits' splits split
 verdict 'clip.c is C89' c89 clip "$build/libgnomon.a"
 verdict 'clip.c clips' clips clip
+verdict 'lit.c is C89' c89 lit "$build/libgnomon.a"
+verdict 'lit.c finds lit areas' asks lit
 verdict 'files.c is C89' c89 files "$build/libgnomon-io.a" "$build/libgnomon.a" $io_libs -lOpenEXRCore
 verdict 'files.c loads and writes' loads
 verdict 'rows.c is C89' c89 rows "$build/libgnomon.a"

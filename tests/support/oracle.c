@@ -509,6 +509,20 @@ static void light_point(const oracle *o, const face *a, const double point[3], c
     }
 }
 
+void oracle_reach(const oracle *o, long polygon, const double point[3], size_t light, double passed[3])
+{
+    const lamp *l = &o->lamps[light];
+    double to[3];
+    int far = l->l.type == GNO_LIGHT_DIRECTIONAL;
+    passed[0] = passed[1] = passed[2] = 0;
+    for (int k = 0; k < 3; k++) to[k] = far ? -l->direction[k] : l->position[k] - point[k];
+    unit(to);
+    for (size_t i = 0; i < o->face_count; i++) {
+        const face *a = &o->faces[i];
+        if ((long)a->polygon == polygon && fabs(dot(a->n, to)) > GRAZING && -dot(to, l->direction) >= l->cone) passes(o, l, a, point, passed);
+    }
+}
+
 oracle_sample oracle_look(const oracle *o, double x, double y)
 {
     oracle_sample s;

@@ -45,6 +45,10 @@ oracle_pixel oracle_look_pixel(const oracle *o, int px, int py, int n, unsigned 
 /* All pixels, row by row; pixels has width x height elements. */
 void oracle_picture(const oracle *o, int n, unsigned seed, oracle_pixel *pixels);
 
+/* What of an expanded light arrives at a point of the polygon, on the side that faces the light; nothing outside a spot's cone, nor
+ * on a polygon that is edge-on or has no area. Softness of shadows is part of it. */
+void oracle_reach(const oracle *o, long polygon, const double point[3], size_t light, double passed[3]);
+
 /* Polygons with area, and lights after area lights are split: their product is the cost of a sample. */
 size_t oracle_polygons(const oracle *o);
 size_t oracle_lights(const oracle *o);
