@@ -1,5 +1,6 @@
 /* cover.c -- see cover.h. */
 #include "shadow/cover.h"
+#include "shadow/hidden.h"
 
 #include <float.h>
 #include <string.h>
@@ -29,7 +30,9 @@ int gnoi_cover_make(const gno_scene *scene, gnoi_cover *cover)
     cover->context = cover->casters.context = cover->veils.context = cover->cone.context = scene->context;
     cover->marks = gnoi_calloc(scene->context, scene->prepared.poly_count, sizeof *cover->marks);
     cover->mark_count = scene->prepared.poly_count;
-    return cover->marks != NULL;
+    cover->vertex_marks = gnoi_calloc(scene->context, scene->prepared.vertex_count, sizeof *cover->vertex_marks);
+    cover->vertex_count = scene->prepared.vertex_count;
+    return cover->marks && cover->vertex_marks;
 }
 
 static void list_free(gno_context *context, gnoi_list *list)
@@ -47,7 +50,9 @@ void gnoi_cover_free(gnoi_cover *cover)
     list_free(cover->context, &cover->veil_index);
     list_free(cover->context, &cover->partners);
     list_free(cover->context, &cover->found);
+    gnoi_free(cover->context, cover->convex, cover->convex_capacity, sizeof *cover->convex);
     gnoi_free(cover->context, cover->marks, cover->mark_count, sizeof *cover->marks);
+    gnoi_free(cover->context, cover->vertex_marks, cover->vertex_count, sizeof *cover->vertex_marks);
     gnoi_free(cover->context, cover->points, cover->point_capacity, sizeof *cover->points);
 }
 
@@ -221,9 +226,7 @@ int gnoi_canvas_outline(const gnoi_canvas *canvas, gnoi_cover *cover, gnoi_shape
 
 /* ---- the region asked about ------------------------------------------------------------------------------------------ */
 
-typedef struct point2 {
-    double x, y;
-} point2;
+typedef gnoi_point2 point2;
 
 typedef struct region {
     double box[4];   /* of all its polygons */
@@ -350,8 +353,10 @@ static int beside(const ring_points *r, const region *to)
     return !(x1 > to->box[0] && x0 < to->box[2] && y1 > to->box[1] && y0 < to->box[3]);
 }
 
-/* Projects positions and sets S as side; *above, *below: some corner is. over: the caster lies on the receiver, before it. */
-static void project_caster(const gnoi_canvas *canvas, uint32_t index, int over, ring_points *r, int *above, int *below)
+/* Projects positions and sets S as side; *above, *below: some corner is. over: the caster lies on the receiver, before it. `vertex`:
+ * the corners' vertices, NULL where the ring was cut before. */
+static void project_caster(const gnoi_canvas *canvas, const gnoi_cover *cover, uint32_t index, int over, const uint32_t *vertex, ring_points *r,
+                           int *above, int *below)
 {
     const gnoi_centre *centre = canvas->centre;
     double height = centre->stands[index].height, slack = centre->noise * (1 / canvas->height + 1 / height);
@@ -359,7 +364,8 @@ static void project_caster(const gnoi_canvas *canvas, uint32_t index, int over, 
         vec3 p = position_of(&r->now[i]);
         gnoi_hpoint a = gnoi_canvas_project(canvas, p);
         a.side = over ? 1 : a.side - gnoi_height_over(centre, index, p) / height;
-        a.side = fabs(a.side) <= slack ? 0 : a.side;
+        if (!over && (fabs(a.side) <= slack || (vertex && cover->vertex_marks[vertex[i]] == cover->mark)))
+            a.side = 0;
         *above |= a.side > 0;
         *below |= a.side < 0;
         r->now[i] = a;
@@ -381,7 +387,7 @@ static cast cast_ring(const gnoi_canvas *canvas, gnoi_cover *cover, const region
     load_positions(centre->scene, corner[0], corner[1], &r);
     if (centre->has_start)
         cut_positions(&centre->start, &r, &cut);
-    project_caster(canvas, index, over, &r, &above, &below);
+    project_caster(canvas, cover, index, over, cut ? NULL : centre->scene->prepared.corner_vertex + corner[0], &r, &above, &below);
     if (!above)
         return CAST_NOTHING;
     if (below)
@@ -458,6 +464,12 @@ static cast try_candidate(const gnoi_canvas *canvas, gnoi_cover *cover, const re
     } else if (poly->corner_count == 3 && below_plane(canvas, poly))
         return CAST_NOTHING;
     c = cast_polygon(canvas, cover, to, index, over, hides == 1 ? &cover->casters : &cover->veils);
+    if (c == CAST_PART && hides == 1) {
+        size_t n = cover->casters.polygon_count;
+        if (!gnoi_reserve(cover->context, (void **)&cover->convex, &cover->convex_capacity, n, sizeof *cover->convex))
+            return CAST_NO_MEMORY;
+        cover->convex[n - 1] = centre->stands[index].convex;
+    }
     if (c == CAST_PART && hides == 2 && !list_add(cover->context, &cover->veil_index, index))
         return CAST_NO_MEMORY;
     return c;
@@ -570,6 +582,15 @@ static gnoi_cover_state cover_cone(const gnoi_canvas *canvas, gnoi_cover *cover,
 
 /* ---- all casters --------------------------------------------------------------------------------------------------- */
 
+static void mark_receiver(gnoi_cover *cover, const gnoi_canvas *canvas)
+{
+    const gnoi_prepared *prep = &canvas->centre->scene->prepared;
+    const gnoi_poly *poly = &prep->polys[canvas->index];
+    cover->mark++;
+    for (uint32_t i = 0; i < poly->corner_count; i++)
+        cover->vertex_marks[prep->corner_vertex[poly->corner + i]] = cover->mark;
+}
+
 gnoi_cover_state gnoi_cover_ask(gnoi_cover *cover, const gnoi_canvas *canvas, const gno_shape *shape, int convex)
 {
     region to = {{0, 0, 0, 0}, {0, 0, 0, 0}, 0, 0, 0, {{0, 0}}};
@@ -584,7 +605,7 @@ gnoi_cover_state gnoi_cover_ask(gnoi_cover *cover, const gnoi_canvas *canvas, co
         return state;
     if (!find_candidates(canvas, cover, &to))
         return GNOI_COVER_NO_MEMORY;
-    cover->mark++;
+    mark_receiver(cover, canvas);
     for (size_t i = 0; i < cover->found.count; i++) {
         uint32_t index = cover->found.items[i];
         cast c;
@@ -594,8 +615,10 @@ gnoi_cover_state gnoi_cover_ask(gnoi_cover *cover, const gnoi_canvas *canvas, co
         c = try_candidate(canvas, cover, &to, index);
         if (c == CAST_ALL)
             return GNOI_COVER_ALL;
-        if (c == CAST_NO_MEMORY)
+        if (c == CAST_NO_MEMORY || gnoi_stopped_at(cover->context, i))
             return GNOI_COVER_NO_MEMORY;
     }
+    if (convex && cover->casters.polygon_count > 1 && gnoi_wholly_hidden(to.corner, to.count, &cover->casters, cover->convex))
+        return GNOI_COVER_ALL;
     return cover->casters.polygon_count + cover->veils.polygon_count > 0 ? GNOI_COVER_PART : state;
 }

@@ -10,7 +10,8 @@
  *     S = h/H - h'/H' > 0,    h', H' the heights over the caster's own plane.
  * S is linear, constant along rays, and changes sign when caster and receiver change places. So of two polygons that
  * meet a ray exactly one hides the other, however badly planar they are: the parts that a centre sees cover each of its rays once.
- * Corners that polygons share are projected to the very same numbers.
+ * Corners that polygons share are projected to the very same numbers, and S is 0 there by rule, so that neighbours that are not quite
+ * planar do not shade each other along their common edge.
  */
 #ifndef GNOI_SHADOW_COVER_H
 #define GNOI_SHADOW_COVER_H
@@ -40,6 +41,8 @@ typedef struct gnoi_cover {
     gno_context *context;
     double slack;         /* overlaps thinner than this are none; 0 but where the region was found from another centre */
     gnoi_shape casters;   /* those that hide wholly */
+    size_t convex_capacity;
+    unsigned char *convex; /* for each caster whether its shadow is one convex ring */
     gnoi_shape veils;     /* those that let light through, one polygon each */
     gnoi_list veil_index; /* their prepared polygons */
     gnoi_shape cone;      /* of a spot, where it does not hold the whole region: one convex polygon */
@@ -47,6 +50,8 @@ typedef struct gnoi_cover {
     gnoi_list found;
     size_t mark_count;
     uint32_t *marks, mark; /* the query that met a polygon last */
+    size_t vertex_count;
+    uint32_t *vertex_marks; /* the query whose receiver had the vertex last */
     size_t point_capacity;
     gnoi_hpoint *points;  /* two halves: before and after a cut */
 } gnoi_cover;

@@ -444,6 +444,7 @@ gno_status gno_lit_pieces(gno_scene *scene, size_t light, const gno_lit_def *def
         return GNO_ERROR_ARGUMENT;
     if (used.threads < 0 || used.threads > GNO_MAX_THREADS)
         return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "threads: %d is not from 0 to %d", used.threads, GNO_MAX_THREADS);
+    gnoi_begin(scene->context, "lit pieces");
     memset(&j, 0, sizeof j);
     memset(&sum, 0, sizeof sum);
     j.scene = scene;

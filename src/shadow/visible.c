@@ -662,6 +662,7 @@ gno_status gno_visible_pieces(gno_scene *scene, const gno_visible_def *def, gno_
         *pieces = NULL;
     if (!scene || !pieces)
         return scene ? gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "visible pieces: no place for them given") : GNO_ERROR_ARGUMENT;
+    gnoi_begin(scene->context, "visible pieces");
     memset(&j, 0, sizeof j);
     memset(&sum, 0, sizeof sum);
     j.scene = scene;
