@@ -227,7 +227,7 @@ static gno_status find_column(gno_matrix *m, size_t receiver)
             of_lamp = c == first ? f->columns[c].shade : gnoi_shade_join(of_lamp, f->columns[c].shade, same);
         m->found_shade = k == 0 ? of_lamp : gnoi_shade_join(m->found_shade, of_lamp, 0);
     }
-    f->caster_count = gnoi_sort_casters(f->context, f->casters, f->caster_count);
+    f->caster_count = f->caster_count ? gnoi_sort_casters(f->context, f->casters, f->caster_count) : 0;
     m->found = receiver;
     return GNO_OK;
 }

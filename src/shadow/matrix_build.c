@@ -26,6 +26,8 @@ typedef struct job {
 static void sort_columns(gnoi_findings *f)
 {
     size_t from = 0, to = 0;
+    if (f->caster_count == 0)
+        return; /* there may be no list at all */
     for (size_t i = 0; i < f->column_count; i++) {
         size_t count = f->columns[i].count, left = gnoi_sort_casters(f->context, f->casters + from, count);
         memmove(f->casters + to, f->casters + from, left * sizeof *f->casters);
