@@ -13,6 +13,7 @@
 #define PER_CELL 5       /* segments for which a lattice has a cell */
 #define MOST_CELLS 1024  /* of a lattice along an axis */
 #define REPEATS 1.5      /* how often a segment may be listed beyond its first cell, in the mean */
+#define MOST_PAIRS 1.25  /* pairs in the cells of a lattice, for each pair there was */
 #define DEEPEST 40       /* lattices in one another */
 #define MARGIN 2.0       /* pixels: half of one, and more than the error of a height in doubles */
 
@@ -47,7 +48,7 @@ static int order_segments(gno_clipper *c)
     if (!GNOI_CLIP_RESERVE(c, keys, key_capacity, n) || !GNOI_CLIP_RESERVE(c, key_scratch, key_scratch_capacity, n) ||
         !GNOI_CLIP_RESERVE(c, ordered, ordered_capacity, n))
         return 0;
-    c->slack = ((int64_t)1 << shift) - 1; /* how far apart segments may be and yet in any order */
+    c->slack = ((int64_t)1 << shift) - 1;
     for (size_t i = 0; i < n; i++) {
         c->keys[i].key = (uint32_t)(from[i].a.x >> shift);
         c->keys[i].value = (uint32_t)i;
@@ -184,17 +185,18 @@ static int meet_in_child(gno_clipper *c, const lattice *l, const gnoi_cell *cell
     return meet_in(c, &child, top, count);
 }
 
-/* Whether one cell has most of the segments and others have them too: they run together, and no lattice will part them. */
-static int run_together(const gno_clipper *c, const entries *e, size_t cells, size_t count, size_t listed)
+/* Whether the cells have not many more pairs of segments than the whole. Where segments run together no lattice parts them, it only
+ * repeats their pairs. */
+static int pays(const gno_clipper *c, const entries *e, size_t cells, size_t count)
 {
-    for (size_t i = 0; 2 * listed > 3 * count && i < cells; i++) {
-        size_t n = 0;
+    double pairs = 0;
+    for (size_t i = 0; i < cells; i++) {
+        double n = 0;
         for (uint32_t at = c->cell_list[e->head + i]; at != GNOI_CLIP_NONE; at = c->cell_list[at + 1])
             n++;
-        if (4 * n > 3 * count)
-            return 1;
+        pairs += n * n;
     }
-    return 0;
+    return pairs <= MOST_PAIRS * (double)count * (double)count;
 }
 
 static int meet_in_lattice(gno_clipper *c, const gnoi_cell *cell, const lattice *l, size_t first, size_t count)
@@ -210,7 +212,7 @@ static int meet_in_lattice(gno_clipper *c, const gnoi_cell *cell, const lattice 
     for (size_t i = count; i-- > 0;) /* links turn the order round */
         if (!list_segment(c, cell, l, &e, &listed, c->cell_list[first + i]))
             return 0;
-    if (run_together(c, &e, cells, count, listed))
+    if (!pays(c, &e, cells, count))
         return gnoi_clip_meet_in_cell(c, cell, c->cell_list + first, count);
     top = e.first + 2 * listed;
     for (size_t i = 0; i < cells; i++) {

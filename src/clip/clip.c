@@ -33,6 +33,7 @@ void gno_clipper_destroy(gno_clipper *c)
     FREE(ordered, ordered_capacity);
     FREE(cell_list, cell_capacity);
     FREE(boxes, box_capacity);
+    FREE(members, member_capacity);
     FREE(splits, split_capacity);
     FREE(keys, key_capacity);
     FREE(key_scratch, key_scratch_capacity);

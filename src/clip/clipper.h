@@ -44,10 +44,16 @@ typedef struct gnoi_cell {
     int depth; /* lattices it lies in */
 } gnoi_cell;
 
+/* Segments at one place, in the cell that is being done. */
 typedef struct gnoi_box {
     int64_t x0, x1, y0, y1; /* ends included */
-    uint32_t segment;
+    int64_t low, high;      /* along the cell's own direction (meet.c), rounded outwards */
+    uint32_t segment;       /* the first of them */
+    uint32_t first, count;  /* all, in c->members */
 } gnoi_box;
+
+#define GNOI_CLIP_SEEN 64
+
 
 /* Windings of the two operands gained when an edge is crossed upwards; where an operand is a single polygon the count of its
  * pieces, of which only the last bit matters. */
@@ -127,9 +133,14 @@ struct gno_clipper {
     size_t ordered_capacity;
     uint32_t *cell_list; /* stack of lists of segments */
     size_t cell_capacity;
-    gnoi_box *boxes; /* of the present cell's segments, x0 rising but for `slack` */
+    gnoi_box *boxes; /* of the present cell's segments, `low` rising but for `slack` */
     size_t box_count, box_capacity;
-    int64_t slack;
+    int64_t slack;          /* how far apart along x segments may be and yet stand in any order */
+    int64_t cell_slack;     /* the same for the boxes */
+    double across[2];       /* the cell's direction */
+    uint32_t *members;      /* segments of the boxes */
+    size_t member_capacity;
+    gnoi_site seen[GNOI_CLIP_SEEN]; /* crossings met last in the cell, by hash */
     gnoi_split *splits;
     size_t split_count, split_capacity;
 

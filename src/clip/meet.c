@@ -16,6 +16,11 @@
  */
 #include "clip/clipper.h"
 
+#include <math.h>
+
+#define CROWD 100  /* segments in a cell that are put in order across the longest */
+#define ROUNDING 4 /* pixels: half of one, and more than the error of a place along a direction */
+
 /* ---- exact tests ----------------------------------------------------------------------------------------------- */
 
 static int in_cell(const gnoi_cell *cell, gnoi_site p)
@@ -25,7 +30,7 @@ static int in_cell(const gnoi_cell *cell, gnoi_site p)
 
 static int in_box(const gnoi_box *box, gnoi_site p)
 {
-    return p.x >= box->x0 && p.x <= box->x1 && p.y >= box->y0 && p.y <= box->y1;
+    return (p.x >= box->x0) & (p.x <= box->x1) & (p.y >= box->y0) & (p.y <= box->y1); /* one branch, not four */
 }
 
 static gnoi_wide side(const gnoi_segment *s, gnoi_site p)
@@ -50,14 +55,22 @@ static int far_off(const gnoi_segment *s, gnoi_wide f)
     return !gnoi_wide_small(f, &value) || 2 * value > reach || -2 * value > reach;
 }
 
+/* Where a point lies along the cell's direction; in a crowded cell within a unit or two. */
+static int64_t along(const gno_clipper *c, gnoi_site p)
+{
+    return c->across[1] == 0 ? p.x : (int64_t)(c->across[0] * (double)p.x + c->across[1] * (double)p.y);
+}
+
 /* ---- recording ------------------------------------------------------------------------------------------------- */
 
-static int add_split(gno_clipper *c, uint32_t segment, uint32_t point)
+static int add_split(gno_clipper *c, const gnoi_box *box, uint32_t point)
 {
-    if (c->split_count >= GNOI_CLIP_MOST || !GNOI_CLIP_RESERVE(c, splits, split_capacity, c->split_count + 1))
+    if (c->split_count >= GNOI_CLIP_MOST || !GNOI_CLIP_RESERVE(c, splits, split_capacity, c->split_count + box->count))
         return 0;
-    c->splits[c->split_count].segment = segment;
-    c->splits[c->split_count++].point = point;
+    for (uint32_t i = 0; i < box->count; i++) {
+        c->splits[c->split_count].segment = c->members[box->first + i];
+        c->splits[c->split_count++].point = point;
+    }
     return 1;
 }
 
@@ -86,17 +99,28 @@ static gnoi_site crossing(const gnoi_segment *s, const gnoi_segment *t, gnoi_wid
     return p;
 }
 
+/* Whether a crossing's pixel has been hot already, as far as can be told at once; many segments may cross in one. */
+static int seen_before(gno_clipper *c, gnoi_site p)
+{
+    gnoi_site *seen = &c->seen[((uint64_t)p.x * 31 + (uint64_t)p.y * 17) % GNOI_CLIP_SEEN];
+    int same = gnoi_site_equal(*seen, p);
+    *seen = p;
+    return same;
+}
+
 /* A new hot pixel bends every segment of the cell that passes it. */
 static int add_crossing(gno_clipper *c, const gnoi_cell *cell, gnoi_site p)
 {
     uint32_t point = (uint32_t)c->point_count;
-    if (!in_cell(cell, p))
+    int64_t reach;
+    if (!in_cell(cell, p) || seen_before(c, p))
         return 1;
     if (!add_point(c, p))
         return 0;
-    for (const gnoi_box *b = c->boxes, *end = b + c->box_count; b < end && b->x0 <= p.x + c->slack; b++) {
+    reach = along(c, p) + c->cell_slack;
+    for (const gnoi_box *b = c->boxes, *end = b + c->box_count; b < end && b->low <= reach; b++) {
         const gnoi_segment *s = &c->segments[b->segment];
-        if (in_box(b, p) && line_passes(s, side(s, p)) && !add_split(c, b->segment, point))
+        if (in_box(b, p) && line_passes(s, side(s, p)) && !add_split(c, b, point))
             return 0;
     }
     return 1;
@@ -104,16 +128,23 @@ static int add_crossing(gno_clipper *c, const gnoi_cell *cell, gnoi_site p)
 
 /* ---- one pair -------------------------------------------------------------------------------------------------- */
 
-/* t's starting point as a hot pixel on s; at_a and at_b are the sides of s that t's ends lie on. Each point of a ring starts one
- * segment, so none is forgotten and none met twice. */
-static int start_on(gno_clipper *c, const gnoi_cell *cell, const gnoi_box *box, const gnoi_segment *t, gnoi_wide at_a, gnoi_wide at_b)
+/* An end of t as a hot pixel on s; f is the side of s that it lies on. */
+static int end_on(gno_clipper *c, const gnoi_cell *cell, const gnoi_box *box, gnoi_site p, uint32_t point, gnoi_wide f)
 {
     const gnoi_segment *s = &c->segments[box->segment];
-    gnoi_site p = t->sign > 0 ? t->a : t->b;
-    if (!in_box(box, p) || !in_cell(cell, p) || !line_passes(s, t->sign > 0 ? at_a : at_b) || gnoi_site_equal(p, s->a) ||
-        gnoi_site_equal(p, s->b))
+    if (!in_box(box, p) || !in_cell(cell, p) || !line_passes(s, f) || gnoi_site_equal(p, s->a) || gnoi_site_equal(p, s->b))
         return 1;
-    return add_split(c, box->segment, t->sign > 0 ? t->pa : t->pb);
+    return add_split(c, box, point);
+}
+
+/* t's starting point on s; each point of a ring starts one segment, so none is forgotten and none met twice. Of several segments at one
+ * place some may start at either end. */
+static int start_on(gno_clipper *c, const gnoi_cell *cell, const gnoi_box *box, const gnoi_box *t_box, gnoi_wide at_a, gnoi_wide at_b)
+{
+    const gnoi_segment *t = &c->segments[t_box->segment];
+    if ((t->sign > 0 || t_box->count > 1) && !end_on(c, cell, box, t->a, t->pa, at_a))
+        return 0;
+    return (t->sign > 0 && t_box->count == 1) || end_on(c, cell, box, t->b, t->pb, at_b);
 }
 
 /* Neighbours in a ring, the commonest pair: whether they have nothing in common but their common end, and no other hot pixel either. */
@@ -140,31 +171,115 @@ static int meet_pair(gno_clipper *c, const gnoi_cell *cell, const gnoi_box *s_bo
         return 1;
     sa = side(t, s->a);
     sb = side(t, s->b);
-    if (!start_on(c, cell, s_box, t, ta, tb) || !start_on(c, cell, t_box, s, sa, sb))
+    if (!start_on(c, cell, s_box, t_box, ta, tb) || !start_on(c, cell, t_box, s_box, sa, sb))
         return 0;
     if (side_a * side_b >= 0 || gnoi_wide_sign(sa) * gnoi_wide_sign(sb) >= 0)
         return 1;
     return add_crossing(c, cell, crossing(s, t, sa));
 }
 
+/* ---- all pairs -------------------------------------------------------------------------------------------------------- */
+
+static void set_box(const gno_clipper *c, gnoi_box *box, uint32_t segment, uint32_t first)
+{
+    const gnoi_segment *s = &c->segments[segment];
+    box->x0 = box->low = s->a.x;
+    box->x1 = box->high = s->b.x;
+    box->y0 = s->a.y < s->b.y ? s->a.y : s->b.y;
+    box->y1 = s->a.y < s->b.y ? s->b.y : s->a.y;
+    box->segment = segment;
+    box->first = first;
+    box->count = 1;
+}
+
+static int box_before(const gno_clipper *c, const gnoi_box *p, const gnoi_box *q)
+{
+    const gnoi_segment *s = &c->segments[p->segment], *t = &c->segments[q->segment];
+    if (p->low != q->low)
+        return p->low < q->low;
+    if (!gnoi_site_equal(s->a, t->a))
+        return gnoi_site_less(s->a, t->a);
+    return gnoi_site_equal(s->b, t->b) ? p->segment < q->segment : gnoi_site_less(s->b, t->b);
+}
+
+static void sift_box(const gno_clipper *c, gnoi_box *heap, size_t at, size_t count)
+{
+    gnoi_box moved = heap[at];
+    for (size_t child; (child = 2 * at + 1) < count; at = child) {
+        if (child + 1 < count && box_before(c, &heap[child], &heap[child + 1]))
+            child++;
+        if (!box_before(c, &moved, &heap[child]))
+            break;
+        heap[at] = heap[child];
+    }
+    heap[at] = moved;
+}
+
+/* A cell that no lattice could thin out: segments there run side by side, or on one another, or through one place. Boxes get their
+ * extent across the longest one, in that order only near ones are compared; segments at one place share a box. */
+static void order_crowd(gno_clipper *c)
+{
+    gnoi_box *boxes = c->boxes;
+    size_t n = c->box_count, kept = 0;
+    double longest = 0;
+    for (size_t i = 0; i < n; i++) {
+        const gnoi_segment *s = &c->segments[boxes[i].segment];
+        double dx = (double)(s->b.x - s->a.x), dy = (double)(s->b.y - s->a.y), length = sqrt(dx * dx + dy * dy);
+        if (length > longest) {
+            longest = length;
+            c->across[0] = -dy / length;
+            c->across[1] = dx / length;
+        }
+    }
+    for (size_t i = 0; i < n; i++) {
+        const gnoi_segment *s = &c->segments[boxes[i].segment];
+        int64_t a = along(c, s->a), b = along(c, s->b);
+        boxes[i].low = (a < b ? a : b) - ROUNDING;
+        boxes[i].high = (a < b ? b : a) + ROUNDING;
+    }
+    for (size_t i = n / 2; i-- > 0;)
+        sift_box(c, boxes, i, n);
+    for (size_t end = n; end-- > 1;) {
+        gnoi_box largest = boxes[0];
+        boxes[0] = boxes[end];
+        boxes[end] = largest;
+        sift_box(c, boxes, 0, end);
+    }
+    for (size_t i = 0; i < n; i++) {
+        const gnoi_segment *s = &c->segments[boxes[i].segment], *last = kept > 0 ? &c->segments[boxes[kept - 1].segment] : NULL;
+        c->members[i] = boxes[i].segment;
+        if (last && gnoi_site_equal(s->a, last->a) && gnoi_site_equal(s->b, last->b)) {
+            boxes[kept - 1].count++;
+        } else {
+            boxes[kept] = boxes[i];
+            boxes[kept++].first = (uint32_t)i;
+        }
+    }
+    c->box_count = kept;
+    c->cell_slack = 0;
+}
+
 int gnoi_clip_meet_in_cell(gno_clipper *c, const gnoi_cell *cell, const uint32_t *list, size_t count)
 {
-    if (!GNOI_CLIP_RESERVE(c, boxes, box_capacity, count))
+    static const gnoi_site nowhere = {-1, -1};
+    if (!GNOI_CLIP_RESERVE(c, boxes, box_capacity, count) || !GNOI_CLIP_RESERVE(c, members, member_capacity, count))
         return 0;
+    for (size_t i = 0; i < GNOI_CLIP_SEEN; i++)
+        c->seen[i] = nowhere;
     c->box_count = count;
+    c->cell_slack = c->slack;
+    c->across[0] = 1;
+    c->across[1] = 0;
     for (size_t i = 0; i < count; i++) {
-        const gnoi_segment *s = &c->segments[list[i]];
-        gnoi_box *box = &c->boxes[i];
-        box->x0 = s->a.x;
-        box->x1 = s->b.x;
-        box->y0 = s->a.y < s->b.y ? s->a.y : s->b.y;
-        box->y1 = s->a.y < s->b.y ? s->b.y : s->a.y;
-        box->segment = list[i];
+        set_box(c, &c->boxes[i], list[i], (uint32_t)i);
+        c->members[i] = list[i];
     }
-    for (const gnoi_box *s = c->boxes, *end = s + count; s < end; s++) {
-        int64_t reach = s->x1 + c->slack;
-        for (const gnoi_box *t = s + 1; t < end && t->x0 <= reach; t++) {
-            if (t->y0 <= s->y1 && s->y0 <= t->y1 && t->x0 <= s->x1 && s->x0 <= t->x1 && !meet_pair(c, cell, s, t))
+    if (count > CROWD)
+        order_crowd(c);
+    for (const gnoi_box *s = c->boxes, *end = s + c->box_count; s < end; s++) {
+        int64_t reach = s->high + c->cell_slack;
+        for (const gnoi_box *t = s + 1; t < end && t->low <= reach; t++) {
+            if (((t->y0 <= s->y1) & (s->y0 <= t->y1) & (t->x0 <= s->x1) & (s->x0 <= t->x1)) && !meet_pair(c, cell, s, t))
                 return 0;
         }
     }

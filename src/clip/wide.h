@@ -36,9 +36,13 @@ static inline int gnoi_wide_small(gnoi_wide a, int64_t *value)
     return a > -((gnoi_wide)1 << 62) && a < (gnoi_wide)1 << 62;
 }
 
+/* a within two units of 2^-53 of itself; |a| < 2^116. Two signed halves convert without a branch that no processor can foresee. */
 static inline double gnoi_wide_double(gnoi_wide a)
 {
-    return (double)a;
+    int64_t small;
+    if (gnoi_wide_small(a, &small))
+        return (double)small;
+    return (double)(int64_t)(a >> 64) * 18446744073709551616.0 + (double)(int64_t)((uint64_t)(gnoi_uwide)a >> 1) * 2.0;
 }
 
 /* a m - b n, which must fit; the products need not. */
@@ -150,7 +154,7 @@ static inline int64_t gnoi_wide_share_exact(int64_t length, gnoi_wide num, gnoi_
 
 /* The integer nearest to length * num / den, halves upwards (towards +infinity), exactly. 0 < num < den, both below 2^107;
  * |length| < 2^53; ratio is the quotient of num and den as doubles: with the roundings of both, of the division and of the product here it
- * is off by less than five units of 2^-53, so that most products lie safely on one side of a half. */
+ * is off by less than seven units of 2^-53, so that most products lie safely on one side of a half. */
 static inline int64_t gnoi_wide_share(int64_t length, gnoi_wide num, gnoi_wide den, double ratio)
 {
     double size = (double)(length < 0 ? -length : length) * ratio, error = size * (8.0 / 9007199254740992.0);

@@ -17,7 +17,7 @@ if [ -n "$missing" ]; then
 fi
 mkdir -p "$out"
 make -s "$build/libgnomon.a" || exit 1
-${CC:-gcc} -O2 -Wall -Wextra -Iinclude -Itests tests/bench/clip_geos.c tests/support/shapes.c "$build/libgnomon.a" -lgeos_c -lm -pthread \
+${CC:-gcc} -O2 -Wall -Wextra -Iinclude -Itests tests/bench/clip_geos.c tests/support/shapes.c tests/support/slabs.c "$build/libgnomon.a" -lgeos_c -lm -pthread \
     -o "$out/clip_geos" || exit 1
 peer=(tests/bench/clip_peer.cpp)
 [ -n "${CLIPPER2:-}" ] && peer=(-std=c++17 -DPEER_CLIPPER2 "-I$CLIPPER2/include" tests/bench/clip_peer.cpp "$CLIPPER2/src/clipper.engine.cpp")

@@ -218,12 +218,51 @@ static void test_coarse_grid(void **state)
     f->clipper->bits = GNOI_CLIP_BITS;
 }
 
+/* ---- crowds: hundreds of edges on one another, side by side, through one place ---------------------------------------------- */
+
+enum { SAME, BUNDLE, NEEDLES, CROWDS };
+
+static void make_crowd(shape_buffer *to, int kind, int count)
+{
+    shape_clear(to);
+    for (int i = 0; i < count; i++) {
+        double h = 1e-5 * i, angle = 3.14159 * i / count;
+        shape_begin_polygon(to);
+        shape_begin_ring(to);
+        for (int k = 0; kind == SAME && k < 6; k++)
+            shape_point(to, cos((i % 2 ? k : -k) * 1.047), sin((i % 2 ? k : -k) * 1.047));
+        for (int k = 0; kind == BUNDLE && k < 4; k++)
+            shape_point(to, k == 1 || k == 2, (k == 1 || k == 2) + h + (k > 1 ? 1.2e-5 : 0));
+        for (int k = 0; kind == NEEDLES && k < 3; k++)
+            shape_point(to, (k ? -1 : 1) * cos(angle + (k > 1 ? 0.5 / count : 0)), (k ? -1 : 1) * sin(angle + (k > 1 ? 0.5 / count : 0)));
+    }
+}
+
+static void test_crowds(void **state)
+{
+    fixture *f = *state;
+    for (int kind = 0; kind < CROWDS; kind++)
+        for (int fine = 0; fine < 2; fine++) {
+            gno_shape a, result;
+            make_crowd(&f->a, kind, kind == NEEDLES ? 70 : 150);
+            a = shape_view(&f->a);
+            f->clipper->bits = fine ? GNOI_CLIP_BITS : 9;
+            assert_int_equal(gno_clip(f->clipper, GNO_CLIP_UNION, &a, NULL, &result), GNO_OK);
+            if (fine)
+                near_area(gno_shape_area(&result), slab_area(GNO_CLIP_UNION, &a, NULL), 2, kind, 0, 0);
+            else
+                check_result(&result, 2, kind, 0);
+        }
+    f->clipper->bits = GNOI_CLIP_BITS;
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_families),
         cmocka_unit_test(test_idempotence),
         cmocka_unit_test(test_coarse_grid),
+        cmocka_unit_test(test_crowds),
     };
     return cmocka_run_group_tests(tests, set_up, tear_down) != 0;
 }
