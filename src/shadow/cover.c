@@ -360,15 +360,24 @@ static void project_caster(const gnoi_canvas *canvas, const gnoi_cover *cover, u
 {
     const gnoi_centre *centre = canvas->centre;
     double height = centre->stands[index].height, slack = centre->noise * (1 / canvas->height + 1 / height);
+    int up = 0, down = 0; /* of the corners that the receiver does not have */
     for (size_t i = 0; i < r->count; i++) {
         vec3 p = position_of(&r->now[i]);
         gnoi_hpoint a = gnoi_canvas_project(canvas, p);
         a.side = over ? 1 : a.side - gnoi_height_over(centre, index, p) / height;
-        if (!over && (fabs(a.side) <= slack || (vertex && cover->vertex_marks[vertex[i]] == cover->mark)))
+        if (fabs(a.side) <= slack)
             a.side = 0;
-        *above |= a.side > 0;
-        *below |= a.side < 0;
+        if (!vertex || cover->vertex_marks[vertex[i]] != cover->mark) {
+            up |= a.side > 0;
+            down |= a.side < 0;
+        }
         r->now[i] = a;
+    }
+    for (size_t i = 0; i < r->count; i++) {
+        if (!over && vertex && !(up && down) && cover->vertex_marks[vertex[i]] == cover->mark)
+            r->now[i].side = 0;
+        *above |= r->now[i].side > 0;
+        *below |= r->now[i].side < 0;
     }
 }
 
