@@ -1,6 +1,6 @@
 /* info.c -- gnomon info: what is in a scene, as a table or as JSON.
  *
- * Place: arguments -> gno_scene_load -> gno_scene_prepare (which finds the problems) -> gathered in a `summary` -> printed
+ * Place: arguments -> gno_scene_load -> gno_scene_find_problems -> gathered in a `summary` -> printed
  * by info_text.c or info_json.c.
  */
 #include "cli/cli.h"
@@ -35,11 +35,14 @@ static int help(void)
 {
     printf("usage: gnomon info [OPTIONS] SCENE\n\n"
            "Tells what is in SCENE, a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb):\n"
-           "counts, bounds, camera, lights, materials, and what is wrong with its polygons.\n\noptions:\n");
+           "counts, bounds, camera, lights, materials, and what is wrong with its polygons: those without area, not\n"
+           "planar, given twice, wound against their neighbours; edges of one polygon alone, and of more than two. The\n"
+           "table names the first of each, --json all of them; polygons are numbered from 0 as they are read.\n\noptions:\n");
     option_print(options, OPTIONS);
     printf("\nexamples:\n"
            "  gnomon info town.yaml\n"
-           "  gnomon info --json bunny.obj | jq .counts.polygons\n");
+           "  gnomon info --json bunny.obj | jq .counts.polygons\n"
+           "  gnomon info --json bunny.obj | jq .problems.ids.flipped\n");
     return close_output();
 }
 
@@ -80,9 +83,33 @@ static int read_arguments(job *work, int argc, char **argv)
     return work->scene_path != NULL ? -1 : usage("info", "no scene given");
 }
 
+/* Stops the search when memory is short; `room` without items tells so. */
+static int keep_problem(void *user, const gno_problem *problem)
+{
+    found_list *list = user;
+    if (list->count == list->room) {
+        list->room = list->room * 2 + 64;
+        gno_problem *grown = realloc(list->items, list->room * sizeof *grown);
+        if (grown == NULL) {
+            free(list->items);
+            list->items = NULL;
+            return 1;
+        }
+        list->items = grown;
+    }
+    list->items[list->count++] = *problem;
+    return 0;
+}
+
 static gno_status gather(const job *work, gno_scene *scene, summary *found)
 {
-    const gno_status status = gno_scene_prepare(scene, work->threads, &found->problems);
+    gno_status status = gno_scene_prepare(scene, work->threads, &found->problems);
+    if (status == GNO_OK) {
+        status = gno_scene_find_problems(scene, work->threads, keep_problem, &found->list, found->problem_counts);
+    }
+    if (found->list.items == NULL && found->list.room > 0) {
+        return gno_context_fail(gno_scene_context(scene), GNO_ERROR_MEMORY, "out of memory");
+    }
     if (status != GNO_OK) {
         return status;
     }
@@ -167,6 +194,7 @@ static int run_job(const job *work)
     }
     free(found.warnings);
     free(found.material_polygons);
+    free(found.list.items);
     gno_scene_destroy(scene);
     gno_context_destroy(context);
     return exit_status;

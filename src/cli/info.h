@@ -4,11 +4,20 @@
 
 #include "cli/cli.h"
 
+#include <gnomon/gnomon_problems.h>
+
+typedef struct found_list {
+    gno_problem *items; /* in the order of kinds */
+    size_t count, room;
+} found_list;
+
 typedef struct summary {
     const char *path;
     const gno_scene *scene;
     gno_scene_counts counts;
     gno_scene_problems problems;
+    size_t problem_counts[GNO_PROBLEM_KINDS];
+    found_list list;
     int has_bounds;
     double lower[3], upper[3];
     size_t holes;

@@ -83,6 +83,48 @@ static void print_material(const gno_material *material, size_t polygons)
     printf(", \"two_sided\": %s}", material->two_sided ? "true" : "false");
 }
 
+static const char *const kind_keys[GNO_PROBLEM_KINDS] = {"degenerate", "non_planar", "duplicate", "flipped", "open_edges", "crowded_edges"};
+
+/* Polygons as their numbers, others with what belongs to them. */
+static void print_problem(const gno_problem *problem)
+{
+    switch (problem->kind) {
+    case GNO_PROBLEM_DUPLICATE:
+        printf("{\"polygon\": %zu, \"of\": %ld}", problem->polygon, problem->other);
+        break;
+    case GNO_PROBLEM_OPEN_EDGE:
+    case GNO_PROBLEM_CROWDED_EDGE:
+        printf("{\"polygon\": %zu, \"vertices\": [%d, %d]}", problem->polygon, problem->vertex[0], problem->vertex[1]);
+        break;
+    default:
+        printf("%zu", problem->polygon);
+    }
+}
+
+static void print_problems(const summary *found)
+{
+    const gno_problem *next = found->list.items;
+    printf("  \"problems\": {");
+    for (int kind = 0; kind < GNO_PROBLEM_KINDS; kind++) {
+        printf("\"%s\": %zu, ", kind_keys[kind], found->problem_counts[kind]);
+    }
+    printf("\"details_found\": %zu,\n    \"ids\": {", found->problems.details);
+    for (int kind = 0; kind < GNO_PROBLEM_KINDS; kind++) {
+        printf("%s\"%s\": [", kind > 0 ? ",\n      " : "\n      ", kind_keys[kind]);
+        for (size_t i = 0; i < found->problem_counts[kind]; i++) {
+            printf("%s", i > 0 ? ", " : "");
+            print_problem(next++);
+        }
+        printf("]");
+    }
+    printf("},\n    \"warnings\": [");
+    for (size_t i = 0; i < found->warning_count; i++) {
+        printf("%s", i > 0 ? ",\n      " : "\n      ");
+        json_string(stdout, found->warnings[i]);
+    }
+    printf("]}\n");
+}
+
 void info_json(const summary *found)
 {
     const gno_scene_counts *c = &found->counts;
@@ -118,11 +160,7 @@ void info_json(const summary *found)
             print_material(&material, found->material_polygons[i]);
         }
     }
-    printf("],\n  \"problems\": {\"degenerate\": %zu, \"non_planar\": %zu, \"details_found\": %zu, \"warnings\": [", found->problems.degenerate,
-           found->problems.non_planar, found->problems.details);
-    for (size_t i = 0; i < found->warning_count; i++) {
-        printf("%s", i > 0 ? ",\n    " : "\n    ");
-        json_string(stdout, found->warnings[i]);
-    }
-    printf("]}\n}\n");
+    printf("],\n");
+    print_problems(found);
+    printf("}\n");
 }

@@ -3,6 +3,8 @@
 
 #include <stdio.h>
 
+enum { LISTED = 8 }; /* of each kind of problem; the JSON form has all */
+
 /* One name for values outside the list keeps the printers free of checks. */
 static const char *pick(const char *const *names, int count, int index)
 {
@@ -138,13 +140,39 @@ static void print_materials(const summary *found)
     }
 }
 
+/* The count of a kind, and the first of its polygons or edges. */
+static void print_kind(gno_problem_kind kind, const gno_problem *problems, size_t count)
+{
+    static const char *const words[GNO_PROBLEM_KINDS][2] = {
+        {"polygon", "without area, skipped"},
+        {"polygon", "not planar, split into triangles"},
+        {"polygon", "given before"},
+        {"polygon", "wound against neighbours"},
+        {"edge", "open, of one polygon alone"},
+        {"edge", "of more than two polygons"},
+    };
+    const char *thing = words[kind][0];
+    const size_t shown = count < LISTED ? count : LISTED;
+    printf("  %zu %s%s %s: ", count, thing, plural(count), words[kind][1]);
+    for (size_t i = 0; i < shown; i++) {
+        const gno_problem *p = &problems[i];
+        printf("%s%zu", i > 0 ? ", " : "", p->polygon);
+        if (kind == GNO_PROBLEM_DUPLICATE) {
+            printf(" (as %ld)", p->other);
+        } else if (p->vertex[0] >= 0) {
+            printf(" (%d-%d)", p->vertex[0], p->vertex[1]);
+        }
+    }
+    printf("%s\n", count > shown ? ", ..." : "");
+}
+
 static void print_problems(const summary *found)
 {
     const gno_scene_problems *p = &found->problems;
     if (p->details > 0) {
         printf("details    %zu found\n", p->details);
     }
-    if (p->degenerate == 0 && p->non_planar == 0 && found->warning_count == 0) {
+    if (found->list.count == 0 && found->warning_count == 0) {
         printf("problems   none\n");
         return;
     }
@@ -154,11 +182,12 @@ static void print_problems(const summary *found)
         name_text(found->warnings[i]);
         putchar('\n');
     }
-    if (p->degenerate > 0) {
-        printf("  %zu polygon%s without area, skipped\n", p->degenerate, plural(p->degenerate));
-    }
-    if (p->non_planar > 0) {
-        printf("  %zu polygon%s not planar, split into triangles\n", p->non_planar, plural(p->non_planar));
+    const gno_problem *next = found->list.items;
+    for (int kind = 0; kind < GNO_PROBLEM_KINDS; kind++) {
+        if (found->problem_counts[kind] > 0) {
+            print_kind((gno_problem_kind)kind, next, found->problem_counts[kind]);
+            next += found->problem_counts[kind];
+        }
     }
 }
 
