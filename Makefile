@@ -21,6 +21,8 @@ DESTDIR ?=
 BINDIR  ?= $(PREFIX)/bin
 LIBDIR  ?= $(PREFIX)/lib
 INCLUDEDIR ?= $(PREFIX)/include
+MANDIR  ?= $(PREFIX)/share/man
+COMPLETIONDIR ?= $(PREFIX)/share/bash-completion/completions
 PKGCONFIG ?= pkg-config
 BUILD   ?= build
 OUT     ?= out
@@ -247,9 +249,12 @@ install: all
 	  ln -sf $$lib.so.$(VERSION) '$(DESTDIR)$(LIBDIR)'/$$lib.so.$(SOMAJOR) && \
 	  ln -sf $$lib.so.$(SOMAJOR) '$(DESTDIR)$(LIBDIR)'/$$lib.so || exit 1; done
 	install -m 644 $(BUILD)/gnomon.pc $(BUILD)/gnomon-io.pc '$(DESTDIR)$(LIBDIR)/pkgconfig'
+	install -d '$(DESTDIR)$(MANDIR)/man1' '$(DESTDIR)$(COMPLETIONDIR)'
+	install -m 644 docs/man/gnomon.1 '$(DESTDIR)$(MANDIR)/man1'
+	install -m 644 src/cli/completion/gnomon '$(DESTDIR)$(COMPLETIONDIR)'
 
 uninstall:
-	rm -f '$(DESTDIR)$(BINDIR)/gnomon'
+	rm -f '$(DESTDIR)$(BINDIR)/gnomon' '$(DESTDIR)$(MANDIR)/man1/gnomon.1' '$(DESTDIR)$(COMPLETIONDIR)/gnomon'
 	rm -f $(foreach h,$(notdir $(HEADERS)),'$(DESTDIR)$(INCLUDEDIR)/gnomon/$(h)')
 	-rmdir '$(DESTDIR)$(INCLUDEDIR)/gnomon'
 	for lib in libgnomon libgnomon-io; do \

@@ -27,7 +27,8 @@ make_with() { make -s BUILD="$build" CC="${CC:-gcc}" "$@"; }
 installs() { make_with install PREFIX="$prefix" DESTDIR=; }
 everything_there() {
     for file in bin/gnomon include/gnomon/gnomon.h include/gnomon/gnomon_io.h lib/libgnomon.a lib/libgnomon-io.a \
-        lib/libgnomon.so."$version" lib/libgnomon-io.so."$version" lib/pkgconfig/gnomon.pc lib/pkgconfig/gnomon-io.pc; do
+        lib/libgnomon.so."$version" lib/libgnomon-io.so."$version" lib/pkgconfig/gnomon.pc lib/pkgconfig/gnomon-io.pc \
+        share/man/man1/gnomon.1 share/bash-completion/completions/gnomon; do
         [ -f "$prefix/$file" ] || { echo "no $file"; return 1; }
     done
     for header in include/gnomon/*.h; do [ -f "$prefix/$header" ] || { echo "no $header"; return 1; }; done
