@@ -5,6 +5,7 @@
 #   make test       the same, then all tests; the last line counts them
 #   make gallery    docs/gallery.md with a small picture of every scene
 #   make bench      measurements        make check-asan     tests under the address and undefined-behaviour sanitizers
+#   make fuzz       FUZZ_SECONDS for each target of random input
 #   make install    PREFIX, DESTDIR     make check-tsan     threaded tests under the thread sanitizer
 #   make check-port     the engine with 32 bits and on a big-endian machine, by cross compilers and qemu
 #   make check-headers  the public headers in every C and C++ they promise
@@ -67,8 +68,13 @@ ENGINE_OBJ := $(ENGINE_SRC:%.c=$(BUILD)/obj/%.o)
 IO_OBJ     := $(IO_SRC:%.c=$(BUILD)/obj/%.o)
 CLI_OBJ    := $(CLI_SRC:%.c=$(BUILD)/obj/%.o)
 SUPPORT_OBJ := $(SUPPORT_SRC:%.c=$(BUILD)/obj/%.o)
-TEST_OBJ   := $(TEST_SRC:%.c=$(BUILD)/obj/%.o)
+TEST_OBJ   := $(patsubst %.c,$(BUILD)/obj/%.o,$(TEST_SRC) $(wildcard tests/fuzz/*.c))
 TEST_BIN   := $(TEST_SRC:%.c=$(BUILD)/%)
+
+FUZZ_SRC := $(sort $(wildcard tests/fuzz/fuzz_*.c))
+FUZZ_BIN := $(FUZZ_SRC:%.c=$(BUILD)/%)
+# What calls a fuzz target: our own driver, or the compiler's library.
+FUZZ_DRIVER ?= $(BUILD)/obj/tests/fuzz/driver.o
 
 STATIC := $(BUILD)/libgnomon.a $(BUILD)/libgnomon-io.a
 SHARED := $(BUILD)/libgnomon.so $(BUILD)/libgnomon-io.so
@@ -136,6 +142,10 @@ $(TEST_BIN): $(BUILD)/%: $(BUILD)/obj/%.o $(SUPPORT_OBJ) $(STATIC)
 	@mkdir -p $(@D)
 	$(call run,LINK,$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(TEST_LIBS) $(IO_LIBS) -lm)
 
+$(FUZZ_BIN): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/obj/tests/fuzz/fuzz.o $(filter %.o,$(FUZZ_DRIVER)) $(STATIC)
+	@mkdir -p $(@D)
+	$(call run,LINK,$(LINK) $< $(BUILD)/obj/tests/fuzz/fuzz.o $(FUZZ_DRIVER) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
+
 $(BUILD)/gnomon.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' 'Name: gnomon' \
@@ -180,7 +190,7 @@ test:
 	+@$(SUBMAKE) test-run
 
 .PHONY: tests
-tests: $(TEST_BIN)
+tests: $(TEST_BIN) $(FUZZ_BIN)
 
 test-run: all tests
 	@CC='$(CC)' BUILD='$(BUILD)' GNOMON='$(abspath $(BUILD)/gnomon)' \
@@ -190,6 +200,21 @@ test-run: all tests
 VIEWS ?= 10000
 watertight: $(BUILD)/tests/property/test_watertight
 	@GNOMON_VIEWS=$(VIEWS) $<
+
+# Random input for the readers, the clipper and the engines, under the sanitizers: by libFuzzer where clang is, else by our own driver.
+FUZZ_SECONDS ?= 10
+.PHONY: fuzz fuzz-run fuzz-targets
+fuzz-targets: $(FUZZ_BIN)
+fuzz:
+	+@if command -v clang >/dev/null; then \
+	  $(SUBMAKE) $(JOBS) CC=clang BUILD=build/fuzz CFLAGS='-O1 -g -fno-omit-frame-pointer' FUZZ_DRIVER=-fsanitize=fuzzer \
+	    SANITIZE='-fsanitize=address,undefined,fuzzer-no-link -fno-sanitize-recover=undefined' fuzz-run; \
+	else \
+	  $(SUBMAKE) $(JOBS) BUILD=build/asan CFLAGS='-O1 -g -fno-omit-frame-pointer' \
+	    SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=all' fuzz-run; fi
+
+fuzz-run: fuzz-targets
+	@BUILD='$(BUILD)' bash tests/fuzz/fuzz.sh $(FUZZ_SECONDS) $(FUZZ_SRC)
 
 check-headers: $(BUILD)/libgnomon.so $(BUILD)/libgnomon-io.so
 	@CC='$(CC)' BUILD='$(BUILD)' sh tests/check-headers.sh

@@ -60,7 +60,8 @@ void gnoi_piece_veils_finish(gnoi_piece_veils *veils, const gnoi_tile *tile)
         gnoi_piece_veil *veil = &veils->list[i];
         for (int y = 0; y < tile->height; y++)
             for (int x = 0; x < tile->width; x++) {
-                float bare = 1 - veil->before[y][x], area = veil->area[y][x], share = area < bare ? area / bare : area > 0;
+                /* Areas are sums: where there is nothing they may be as far under zero as rounding takes them. */
+                float bare = 1 - veil->before[y][x], area = veil->area[y][x], share = area > 0 ? area < bare ? area / bare : 1 : 0;
                 for (int k = 0; k < 3; k++)
                     veil->through[k][y][x] = 1 - share * (1 - veil->through[k][y][x]);
             }

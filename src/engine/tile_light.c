@@ -99,9 +99,10 @@ static void mark_thin_sheets(gnoi_tile *tile, size_t first_column)
 {
     for (size_t i = first_column; i < tile->column_count; i++) {
         const gnoi_column *column = &tile->columns[i];
-        const gnoi_rim *rims = tile->store.rims + column->rim;
-        if (column->state != GNOI_COLUMN_SPLIT || column->rim_count > FEW_RIMS)
+        const gnoi_rim *rims;
+        if (column->state != GNOI_COLUMN_SPLIT || column->rim_count == 0 || column->rim_count > FEW_RIMS)
             continue;
+        rims = tile->store.rims + column->rim;
         for (uint32_t a = 0; a < column->rim_count; a++) {
             int thin = rims[a].edge.y1 == rims[a].edge.y && rims[a].x1 - rims[a].x0 > 1;
             for (uint32_t b = 0; b < column->rim_count && is_level(&rims[a]) && !thin; b++)

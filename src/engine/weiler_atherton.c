@@ -220,7 +220,7 @@ static void sample_pixel(painter *p, gnoi_slot *slot, int y, int x)
             continue;
         set_cell(&tile->lit[j], &lit->cover, y, x);
         for (int k = 0; k < 3; k++)
-            tile->lit_colour[j][k][x] = (float)lit->light[k][y][x];
+            tile->lit_colour[j][k][x] = lit->light[k][y][x] > 0 ? (float)lit->light[k][y][x] : 0; /* not under zero by rounding */
     }
     gnoi_tile_sample_pixel(tile, slot, p->columns, y + 1, x);
 }
