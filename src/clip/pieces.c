@@ -79,8 +79,8 @@ static void cut_segments(gno_clipper *c)
     c->piece_count = 0;
     for (size_t i = 0; i < c->segment_count; i++) {
         const gnoi_segment *s = &c->segments[i];
-        uint32_t *chain = c->chain + c->bucket[i], last = c->vertex_of[s->pa];
         size_t count = c->bucket[i + 1] - c->bucket[i];
+        uint32_t *chain = count > 0 ? c->chain + c->bucket[i] : NULL, last = c->vertex_of[s->pa]; /* no chain at all: NULL */
         if (count > 1) {
             sort_chain(c, chain, count);
             if (s->b.y < s->a.y)

@@ -215,9 +215,10 @@ static void sample_pixel(painter *p, gnoi_slot *slot, int y, int x)
     gnoi_tile *tile = &p->tile;
     set_cell(&tile->cells, &p->total, y, x);
     for (int j = 0; j < p->job->frame->lamp_count; j++) {
-        const lamp_sums *lit = &p->lamp_sums[p->split[j]];
+        const lamp_sums *lit;
         if (p->columns[j].state != GNOI_COLUMN_SPLIT)
             continue;
+        lit = &p->lamp_sums[p->split[j]];
         set_cell(&tile->lit[j], &lit->cover, y, x);
         for (int k = 0; k < 3; k++)
             tile->lit_colour[j][k][x] = lit->light[k][y][x] > 0 ? (float)lit->light[k][y][x] : 0; /* not under zero by rounding */

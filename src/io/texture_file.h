@@ -55,7 +55,7 @@ gno_status gnoi_textures_get(gnoi_textures *textures, const gnoi_texture_request
                              char reason[GNOI_TEXTURE_REASON]);
 void gnoi_textures_free(gnoi_textures *textures);
 
-/* ---- decoders: GNO_OK, MEMORY, or INPUT with the reason ---- */
+/* ---- decoders: GNO_OK, MEMORY, or INPUT with the reason; gnoi_raster_free is due in any case ---- */
 
 /* From the file at path or, where data is not NULL, from memory. */
 gno_status gnoi_raster_png(gnoi_raster *raster, const char *path, const void *data, size_t size, int is_colour,

@@ -19,8 +19,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size)
     fuzz_expect(status == GNO_OK || status == GNO_ERROR_MEMORY || reason[0] != '\0', "a reason");
     if (status == GNO_OK) {
         fuzz_expect(raster.width > 0 && raster.height > 0 && (raster.bytes == NULL) != (raster.linear == NULL), "one picture");
-        gnoi_raster_free(&raster);
     }
+    gnoi_raster_free(&raster);
     gno_context_destroy(raster.context);
     return 0;
 }
