@@ -8,6 +8,8 @@
 #   matrix, small, views, or a scene (room bunny sponza town-1k town-10k town-100k town-1m dragon): that alone
 #   growth           the tables of docs/growth.md (growth.sh)
 #   textures         what textures and bumps cost on Sponza (textures.sh)
+#   clip             the clipper beside Clipper and GEOS (clip.sh)
+#   pieces           lit and visible pieces of towns (pieces.sh)
 # Embree and POV-Ray are installed from Debian when they are missing (INSTALL=0: not); what cannot be had is skipped and said so.
 #   GNOMON  the tool (build/gnomon)     REPEATS  runs of each, alternating (3)     OUT  where files go and references are kept (build/bench)
 #   GNOMON_SHARED  the folder with data/ and peers/ (../shared)     CC  compiler (cc)
@@ -18,7 +20,7 @@ export GNOMON=${GNOMON:-$PWD/build/gnomon} SHARED=${GNOMON_SHARED:-../shared} OU
 words=()
 for word in "$@"; do
     case $word in
-        growth | textures) bash "tests/bench/$word.sh" || status=1 ;;
+        growth | textures | clip | pieces) bash "tests/bench/$word.sh" || status=1 ;;
         *) words+=("$word") ;;
     esac
 done
