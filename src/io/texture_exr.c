@@ -16,6 +16,8 @@ typedef struct decoder {
     int begun;        /* the pipeline is */
     int left, top;    /* of the data window */
     int is_grey;
+    float *unwanted;  /* a line for the channels that no one asks for: OpenEXRCore 3.1 writes through their null pointers */
+    size_t unwanted_width;
     char message[200];
 } decoder;
 
@@ -54,10 +56,36 @@ static exr_result_t find_channels(decoder *d)
     return EXR_ERR_SUCCESS;
 }
 
+/* Room for a line of a channel that is not wanted; NULL without memory. */
+static float *unwanted_line(decoder *d, size_t width)
+{
+    if (width > d->unwanted_width) {
+        float *grown = gno_context_realloc(d->raster->context, d->unwanted, d->unwanted_width * sizeof *grown, width * sizeof *grown);
+        if (!grown) return NULL;
+        d->unwanted = grown;
+        d->unwanted_width = width;
+    }
+    return d->unwanted;
+}
+
+/* Where a channel goes: into the raster from (x,y) on, or every line into the same one. 0 without memory. */
+static int set_target(decoder *d, exr_coding_channel_info_t *c, int x, int y)
+{
+    gnoi_raster *r = d->raster;
+    int place = place_of(d, c->channel_name), wanted = place >= 0;
+    float *to = wanted ? r->linear + ((size_t)y * (size_t)r->width + (size_t)x) * (size_t)r->channels + place
+                       : unwanted_line(d, (size_t)c->width);
+    c->decode_to_ptr = (uint8_t *)(void *)to;
+    c->user_pixel_stride = (int32_t)((size_t)(wanted ? r->channels : 1) * sizeof(float));
+    c->user_line_stride = wanted ? (int32_t)((size_t)r->channels * sizeof(float) * (size_t)r->width) : 0;
+    c->user_bytes_per_element = sizeof(float);
+    c->user_data_type = EXR_PIXEL_FLOAT;
+    return to != NULL;
+}
+
 /* Decodes the chunk at hand; (x,y) is its first pixel in the raster. */
 static exr_result_t decode_chunk(decoder *d, const exr_chunk_info_t *chunk, int x, int y)
 {
-    gnoi_raster *r = d->raster;
     exr_result_t result = d->begun ? exr_decoding_update(d->exr, 0, chunk, &d->pipeline)
                                    : exr_decoding_initialize(d->exr, 0, chunk, &d->pipeline);
     int first = !d->begun;
@@ -65,16 +93,9 @@ static exr_result_t decode_chunk(decoder *d, const exr_chunk_info_t *chunk, int 
     d->begun = 1;
     for (int i = 0; i < d->pipeline.channel_count; i++) {
         exr_coding_channel_info_t *c = &d->pipeline.channels[i];
-        int place = place_of(d, c->channel_name);
         c->decode_to_ptr = NULL;
         if (c->x_samples != 1 || c->y_samples != 1) return EXR_ERR_FEATURE_NOT_IMPLEMENTED;
-        if (place < 0 || c->height == 0) continue;
-        float *to = r->linear + ((size_t)y * (size_t)r->width + (size_t)x) * (size_t)r->channels + place;
-        c->decode_to_ptr = (uint8_t *)(void *)to;
-        c->user_pixel_stride = (int32_t)((size_t)r->channels * sizeof(float));
-        c->user_line_stride = (int32_t)((size_t)r->channels * sizeof(float) * (size_t)r->width);
-        c->user_bytes_per_element = sizeof(float);
-        c->user_data_type = EXR_PIXEL_FLOAT;
+        if (c->height > 0 && c->width > 0 && !set_target(d, c, x, y)) return EXR_ERR_OUT_OF_MEMORY;
     }
     if (first) result = exr_decoding_choose_default_routines(d->exr, 0, &d->pipeline);
     return result == EXR_ERR_SUCCESS ? exr_decoding_run(d->exr, 0, &d->pipeline) : result;
@@ -154,6 +175,7 @@ gno_status gnoi_raster_exr(gnoi_raster *r, const char *path, char reason[GNOI_TE
     if (result == EXR_ERR_SUCCESS) status = read_part(&d, &result, reason);
     exr_decoding_destroy(d.exr, &d.pipeline);
     exr_finish(&d.exr);
+    if (d.unwanted) gno_context_realloc(r->context, d.unwanted, d.unwanted_width * sizeof *d.unwanted, 0);
     if (status == GNO_OK && result == EXR_ERR_OUT_OF_MEMORY) status = GNO_ERROR_MEMORY;
     if (status == GNO_OK && result != EXR_ERR_SUCCESS) {
         snprintf(reason, GNOI_TEXTURE_REASON, "cannot read %.200s: %.150s", path,
