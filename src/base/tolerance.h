@@ -7,6 +7,9 @@
  * plane of a small face, drawn out over a large one, by ten times that. */
 #define GNOI_COPLANAR 4e-6
 
+/* Rounding of a coordinate, as a share of it: what a plane is off by far from the origin, beside GNOI_COPLANAR. */
+#define GNOI_COORDINATE_NOISE 1e-14
+
 /* A polygon whose corners leave its plane by more than this share of its own extent is not planar (split into triangles);
  * never stricter than GNOI_COPLANAR of the scene. */
 #define GNOI_PLANAR 1e-4

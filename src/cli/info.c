@@ -47,40 +47,31 @@ static int help(void)
 }
 
 /* Returns an exit status, or -1 to go on. */
+static int take_option(void *job_of, int id, char *value)
+{
+    job *work = job_of;
+    switch (id) {
+    case SET:
+        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("info", "--set %s: not KEY=VALUE", value);
+    case THREADS:
+        return parse_int(value, 0, GNO_MAX_THREADS, &work->threads)
+                   ? -1
+                   : usage("info", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
+    case JSON:
+        work->json = 1;
+        return -1;
+    case QUIET:
+        work->quiet = 1;
+        return -1;
+    default:
+        return help();
+    }
+}
+
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("info", options, OPTIONS, argc, argv);
-    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
-        switch (id) {
-        case OPTION_WRONG:
-            return EXIT_USAGE;
-        case OPTION_OPERAND:
-            if (work->scene_path != NULL) {
-                return usage("info", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
-            }
-            work->scene_path = reader.value;
-            break;
-        case SET:
-            if (!parse_setting(reader.value, &work->settings[work->setting_count++])) {
-                return usage("info", "--set %s: not KEY=VALUE", reader.value);
-            }
-            break;
-        case THREADS:
-            if (!parse_int(reader.value, 0, GNO_MAX_THREADS, &work->threads)) {
-                return usage("info", "--threads %s: not a number from 0 to %d", reader.value, GNO_MAX_THREADS);
-            }
-            break;
-        case JSON:
-            work->json = 1;
-            break;
-        case QUIET:
-            work->quiet = 1;
-            break;
-        default:
-            return help();
-        }
-    }
-    return work->scene_path != NULL ? -1 : usage("info", "no scene given");
+    return options_read(&reader, take_option, work, &work->scene_path);
 }
 
 /* Stops the search when memory is short; `room` without items tells so. */

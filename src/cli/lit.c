@@ -71,8 +71,9 @@ static int has_extension(const char *path, const char *const *extensions, int co
 }
 
 /* Returns an exit status, or -1 to go on. */
-static int take_option(job *work, int id, char *value)
+static int take_option(void *job_of, int id, char *value)
 {
+    job *work = job_of;
     static const char *const table[] = {".csv"}, *const geometry[] = {".obj", ".geojson", ".json"};
     switch (id) {
     case OUTPUT:
@@ -114,24 +115,9 @@ static int take_option(job *work, int id, char *value)
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("lit", options, OPTIONS, argc, argv);
-    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
-        if (id == OPTION_WRONG) {
-            return EXIT_USAGE;
-        }
-        if (id == OPTION_OPERAND) {
-            if (work->scene_path != NULL) {
-                return usage("lit", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
-            }
-            work->scene_path = reader.value;
-            continue;
-        }
-        const int status = take_option(work, id, reader.value);
-        if (status >= 0) {
-            return status;
-        }
-    }
-    if (work->scene_path == NULL) {
-        return usage("lit", "no scene given");
+    const int wrong = options_read(&reader, take_option, work, &work->scene_path);
+    if (wrong >= 0) {
+        return wrong;
     }
     if (work->table_path == NULL) {
         work->table_path = "-";

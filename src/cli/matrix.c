@@ -88,8 +88,9 @@ static int check_output(job *work)
 }
 
 /* Returns an exit status, or -1 to go on. */
-static int take_option(job *work, int id, char *value)
+static int take_option(void *job_of, int id, char *value)
 {
+    job *work = job_of;
     switch (id) {
     case OUTPUT:
         work->output = value;
@@ -120,23 +121,8 @@ static int take_option(job *work, int id, char *value)
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("matrix", options, OPTIONS, argc, argv);
-    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
-        if (id == OPTION_WRONG) {
-            return EXIT_USAGE;
-        }
-        if (id == OPTION_OPERAND) {
-            if (work->scene_path != NULL) {
-                return usage("matrix", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
-            }
-            work->scene_path = reader.value;
-            continue;
-        }
-        const int status = take_option(work, id, reader.value);
-        if (status >= 0) {
-            return status;
-        }
-    }
-    return work->scene_path != NULL ? check_output(work) : usage("matrix", "no scene given");
+    const int wrong = options_read(&reader, take_option, work, &work->scene_path);
+    return wrong >= 0 ? wrong : check_output(work);
 }
 
 /* ---- one light ----------------------------------------------------------------------------------------------------- */

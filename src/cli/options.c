@@ -96,6 +96,28 @@ int option_next(option_reader *reader)
     return OPTION_WRONG;
 }
 
+int options_read(option_reader *reader, int (*take)(void *job, int id, char *value), void *job, const char **scene)
+{
+    *scene = NULL;
+    for (int id = option_next(reader); id != OPTION_END; id = option_next(reader)) {
+        if (id == OPTION_WRONG) {
+            return EXIT_USAGE;
+        }
+        if (id == OPTION_OPERAND) {
+            if (*scene != NULL) {
+                return usage(reader->command, "one scene at a time: \"%s\" after \"%s\"", reader->value, *scene);
+            }
+            *scene = reader->value;
+            continue;
+        }
+        const int status = take(job, id, reader->value);
+        if (status >= 0) {
+            return status;
+        }
+    }
+    return *scene != NULL ? -1 : usage(reader->command, "no scene given");
+}
+
 void option_print(const option *options, int option_count)
 {
     enum { COLUMN = 28 };

@@ -34,6 +34,10 @@ option_reader option_reader_make(const char *command_name, const option *options
 /* The next option's index in the table, or one of the above; after OPTION_WRONG the message is out already. */
 int option_next(option_reader *reader);
 
+/* Reads all arguments of a command that works on one scene: `take` gets each option with its argument and returns an exit status, or -1 to
+ * go on. Returns an exit status, or -1 with the scene's path in *scene. */
+int options_read(option_reader *reader, int (*take)(void *job, int id, char *value), void *job, const char **scene);
+
 void option_print(const option *options, int option_count);
 
 /* The name most like the given one, or NULL when none is. */

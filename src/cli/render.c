@@ -108,8 +108,9 @@ static int parse_lines(const char *text, gno_render_def *def)
 }
 
 /* Returns an exit status, or -1 to go on. */
-static int take_option(job *work, int id, char *value)
+static int take_option(void *job_of, int id, char *value)
 {
+    job *work = job_of;
     const char *name = options[id].name;
     switch (id) {
     case OUTPUT:
@@ -176,24 +177,9 @@ static int take_option(job *work, int id, char *value)
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("render", options, OPTIONS, argc, argv);
-    for (int id = option_next(&reader); id != OPTION_END; id = option_next(&reader)) {
-        if (id == OPTION_WRONG) {
-            return EXIT_USAGE;
-        }
-        if (id == OPTION_OPERAND) {
-            if (work->scene_path != NULL) {
-                return usage("render", "one scene at a time: \"%s\" after \"%s\"", reader.value, work->scene_path);
-            }
-            work->scene_path = reader.value;
-            continue;
-        }
-        const int status = take_option(work, id, reader.value);
-        if (status >= 0) {
-            return status;
-        }
-    }
-    if (work->scene_path == NULL) {
-        return usage("render", "no scene given");
+    const int wrong = options_read(&reader, take_option, work, &work->scene_path);
+    if (wrong >= 0) {
+        return wrong;
     }
     if (work->files.count == 0) {
         const int several = work->frames.all || work->frames.last > work->frames.first;

@@ -133,21 +133,6 @@ void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count)
     gnoi_sort(tile->order, tile->order_scratch, count);
 }
 
-static double plane_tolerance(const gno_scene *scene, const gnoi_poly *poly)
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    double reach = 0, far_away = 0;
-    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
-        const double *p = prep->positions[prep->corner_vertex[i]];
-        for (int k = 0; k < 3; k++) {
-            double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
-            reach = r > reach ? r : reach;
-            far_away = fabs(p[k]) > far_away ? fabs(p[k]) : far_away;
-        }
-    }
-    return GNOI_COPLANAR * reach + 1e-14 * far_away;
-}
-
 /* Bounds of the surface's nearness in the tile: those of its corners, and those of its plane over the tile. */
 static void set_depth_bounds(const gnoi_tile *tile, const gnoi_screen_plane *plane, gnoi_depth *depth)
 {
@@ -197,7 +182,7 @@ static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
     r->index = index;
     r->side = side;
     r->nearness = gnoi_view_nearness(&job->view, poly->n, poly->d, side);
-    r->tolerance = plane_tolerance(job->scene, poly);
+    r->tolerance = gnoi_plane_tolerance(&job->scene->prepared, (const double(*)[3])job->scene->prepared.positions, poly);
     r->x0 = clamp(o->x0, tile->x0, x1);
     r->x1 = clamp(o->x1, tile->x0, x1);
     r->y0 = clamp(o->y0, tile->y0 - 0.5, y1);

@@ -267,22 +267,6 @@ static int holds(const flat *f, const gnoi_poly *bearer, const gnoi_poly *poly)
     return 1;
 }
 
-/* Distance from a polygon's plane within which things lie on it: that of the visible lines and of the shadows. */
-static double plane_tolerance(const gno_scene *scene, const gnoi_poly *poly)
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    double far_off = 0, far_away = 0;
-    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
-        const double *p = scene->positions[prep->corner_vertex[i]];
-        for (int k = 0; k < 3; k++) {
-            double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
-            far_off = r > far_off ? r : far_off;
-            far_away = fabs(p[k]) > far_away ? fabs(p[k]) : far_away;
-        }
-    }
-    return GNOI_COPLANAR * far_off + 1e-14 * far_away;
-}
-
 static int bears(const gno_scene *scene, const gnoi_poly *bearer, const gnoi_poly *poly)
 {
     flat f = {scene, 1, 2, 0};
@@ -290,7 +274,7 @@ static int bears(const gno_scene *scene, const gnoi_poly *bearer, const gnoi_pol
     double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
     if (v3_dot(n, v3_from(poly->n)) < FACING || (double)bearer->corner_count * poly->corner_count > MOST_PAIRS)
         return 0;
-    f.tolerance = plane_tolerance(scene, bearer);
+    f.tolerance = gnoi_plane_tolerance(&scene->prepared, (const double(*)[3])scene->positions, bearer);
     for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++)
         if (fabs(v3_dot(n, corner_at(scene, i)) + bearer->d) > f.tolerance)
             return 0;
@@ -387,7 +371,7 @@ static void enter(finder *f, size_t place, int fill)
 {
     const gnoi_poly *poly = &f->scene->prepared.polys[f->order[place].value];
     box b = box_of(f->scene, poly);
-    double slack = plane_tolerance(f->scene, poly);
+    double slack = gnoi_plane_tolerance(&f->scene->prepared, (const double(*)[3])f->scene->positions, poly);
     int64_t low[3], high[3], c[3];
     for (int k = 0; k < 3; k++) {
         low[k] = cell_of(f->scene, f->level[place], k, b.lower[k] - slack);

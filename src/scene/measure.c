@@ -311,3 +311,17 @@ gno_status gnoi_measure_scene(gno_scene *scene, int threads, gnoi_poly *polys, u
     gnoi_free(scene->context, m.chunks, pieces, sizeof *m.chunks);
     return status;
 }
+
+double gnoi_plane_tolerance(const gnoi_prepared *prep, const double (*positions)[3], const gnoi_poly *poly)
+{
+    double reach = 0, far_away = 0;
+    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
+        const double *p = positions[prep->corner_vertex[i]];
+        for (int k = 0; k < 3; k++) {
+            double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
+            reach = r > reach ? r : reach;
+            far_away = fabs(p[k]) > far_away ? fabs(p[k]) : far_away;
+        }
+    }
+    return GNOI_COPLANAR * reach + GNOI_COORDINATE_NOISE * far_away;
+}

@@ -152,6 +152,10 @@ static inline int gnoi_has_holes(const gno_scene *scene, const gno_material *m)
     return m->texture.kind == GNO_TEXTURE_IMAGE && scene->images[m->texture.image].has_alpha;
 }
 
+/* Distance from a prepared polygon's plane within which things lie on it. positions: what corner_vertex indexes, prep's own once
+ * the polygons are in order, the scene's before. */
+double gnoi_plane_tolerance(const gnoi_prepared *prep, const double (*positions)[3], const gnoi_poly *poly);
+
 /* The connected part that a prepared polygon belongs to. */
 static inline uint32_t gnoi_solid_of(const gnoi_prepared *prep, const gnoi_poly *poly)
 {

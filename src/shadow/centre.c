@@ -16,9 +16,6 @@
 /* Turns smaller than this share of the edges' product are none. */
 #define STRAIGHT 1e-12
 
-/* Rounding of a height, as a share of the largest coordinate. */
-#define NOISE 1e-14
-
 gnoi_lamp gnoi_lamp_of_view(const gnoi_view *view)
 {
     gnoi_lamp lamp;
@@ -31,20 +28,6 @@ gnoi_lamp gnoi_lamp_of_view(const gnoi_view *view)
 }
 
 /* ---- single polygons ---------------------------------------------------------------------------------------------- */
-
-static double plane_tolerance(const gnoi_prepared *prep, const gnoi_poly *poly)
-{
-    double reach = 0, far_away = 0;
-    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
-        const double *p = prep->positions[prep->corner_vertex[i]];
-        for (int k = 0; k < 3; k++) {
-            double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
-            reach = r > reach ? r : reach;
-            far_away = fabs(p[k]) > far_away ? fabs(p[k]) : far_away;
-        }
-    }
-    return GNOI_COPLANAR * reach + NOISE * far_away;
-}
 
 /* All turns to the left, and once around only: the edges' direction along one axis of the plane changes sign twice. */
 static int is_convex(const gno_scene *scene, const gnoi_poly *poly)
@@ -92,7 +75,7 @@ static void set_stand(const gnoi_centre *centre, const gnoi_poly *poly, int see_
     s->side = (signed char)(fabs(height) <= EDGE_ON * farthest ? 0 : height > 0 ? 1 : -1);
     s->height = (double)s->side * height;
     s->lift = (double)s->side * lift;
-    s->tolerance = plane_tolerance(&scene->prepared, poly);
+    s->tolerance = gnoi_plane_tolerance(&scene->prepared, (const double(*)[3])scene->prepared.positions, poly);
     s->convex = (unsigned char)is_convex(scene, poly);
     s->hides = (unsigned char)(s->side == 0 || poly->detail ? 0 : poly->opaque ? 1 : t[0] >= 1 && t[1] >= 1 && t[2] >= 1 ? 0 : 2);
     s->hidden = 0;
@@ -193,7 +176,7 @@ gno_status gnoi_centre_make(const gno_scene *scene, const gnoi_lamp *lamp, const
     }
     for (int k = 0; k < 3; k++) {
         double lo = fabs(prep->lower[k]), hi = fabs(prep->upper[k]);
-        centre->noise = fmax(centre->noise, NOISE * fmax(lo, hi));
+        centre->noise = fmax(centre->noise, GNOI_COORDINATE_NOISE * fmax(lo, hi));
     }
     centre->stands = gnoi_calloc(scene->context, prep->poly_count, sizeof *centre->stands);
     if (!centre->stands)

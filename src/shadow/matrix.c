@@ -290,7 +290,7 @@ static size_t bytes_held(const gno_matrix *m)
     if (m->start)
         bytes += (m->size + 1) * sizeof *m->start + m->caster_capacity * sizeof *m->casters + (m->shade ? m->size : 0);
     for (size_t i = 0; i < m->search_count; i++)
-        bytes += m->searches[i].packets.packet_count * sizeof(gnoi_packet) + m->searches[i].packets.node_count * sizeof(gnoi_packet_boxes) +
+        bytes += m->searches[i].packets.packet_count * sizeof(gnoi_packet) + m->searches[i].packets.node_count * sizeof(gnoi_eight) +
                  m->searches[i].facets.triangle_count * sizeof *m->searches[i].facets.triangles;
     return bytes;
 }

@@ -185,7 +185,7 @@ static int search_list(const gnoi_search *search, const gnoi_shaded *r, uint32_t
     const gnoi_prepared *prep = &search->scene->prepared;
     for (size_t i = 0; i < f->list.count; i++) {
         const gnoi_packet *packet = &search->packets.packets[f->list.items[i]];
-        unsigned mask = gnoi_packet_meet(&search->packets.nodes[f->list.items[i]], box) & packet->casts;
+        unsigned mask = gnoi_eight_meet(&search->packets.nodes[f->list.items[i]], box) & packet->casts;
         verdicts v;
         if (!mask)
             continue;
@@ -230,7 +230,7 @@ static int search_receiver(const gnoi_search *search, uint32_t index, int own, c
     return add_column(f, index, first, shade);
 }
 
-static gnoi_lbox box_at(const gnoi_packet_boxes *boxes, unsigned k)
+static gnoi_lbox box_at(const gnoi_eight *boxes, unsigned k)
 {
     gnoi_lbox box;
     box.u0 = boxes->u0[k];

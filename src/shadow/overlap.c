@@ -174,21 +174,6 @@ int gnoi_facet_get(const gnoi_facets *facets, const gno_scene *scene, const gnoi
 
 /* ---- one receiver ------------------------------------------------------------------------------------------------- */
 
-static double plane_tolerance(const gno_scene *scene, const gnoi_poly *poly)
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    double reach = 0, far_away = 0;
-    for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
-        const double *p = prep->positions[prep->corner_vertex[i]];
-        for (int k = 0; k < 3; k++) {
-            double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
-            reach = r > reach ? r : reach;
-            far_away = fabs(p[k]) > far_away ? fabs(p[k]) : far_away;
-        }
-    }
-    return GNOI_COPLANAR * reach + 1e-14 * far_away;
-}
-
 /* Planes through the light and the edges, positive inside: the normal times the third corner's side must be positive. `facing` is the
  * sign of the light's height over the plane that the corners are wound around. */
 static void edge_planes(const gnoi_lamp *lamp, const gnoi_facet *facet, double facing, vec3 *edge)
@@ -224,7 +209,7 @@ void gnoi_shaded_set(gnoi_shaded *r, const gno_scene *scene, const gnoi_lamp *la
     r->poly = poly;
     r->height.a = v3_scale(v3_from(poly->n), sign);
     r->height.b = poly->d * sign;
-    r->tolerance = plane_tolerance(scene, poly);
+    r->tolerance = gnoi_plane_tolerance(&scene->prepared, (const double(*)[3])scene->prepared.positions, poly);
     r->convex = whole_facet(scene, poly, triangles, &r->facet);
     r->piece_count = triangles < IS_TANGLED ? gnoi_triangles_of(poly) : 1;
     set_facet(r);

@@ -244,24 +244,6 @@ static void split_runs(entry *places, size_t count, int parallel)
 
 /* ---- packets ------------------------------------------------------------------------------------------------------ */
 
-static void clear_boxes(gnoi_packet_boxes *node)
-{
-    for (int k = 0; k < GNOI_PACKET; k++) {
-        node->u0[k] = node->v0[k] = node->z0[k] = FLT_MAX;
-        node->u1[k] = node->v1[k] = node->z1[k] = -FLT_MAX;
-    }
-}
-
-static void set_box(gnoi_packet_boxes *node, size_t k, const gnoi_lbox *box)
-{
-    node->u0[k] = box->u0;
-    node->u1[k] = box->u1;
-    node->v0[k] = box->v0;
-    node->v1[k] = box->v1;
-    node->z0[k] = box->z0;
-    node->z1[k] = box->z1;
-}
-
 static int casts(const gno_scene *scene, const gnoi_poly *poly)
 {
     const double *t = scene->materials[poly->material].transmission;
@@ -309,7 +291,7 @@ static gno_status fill_packets(void *user, int worker, size_t piece)
     for (size_t i = piece * RUN_PACKETS; i < end; i++) {
         const entry *e = &j->places[i * GNOI_PACKET];
         for (size_t k = 0; k < GNOI_PACKET; k++) {
-            set_box(&j->packets->nodes[i], k, &e[k].box);
+            gnoi_eight_set(&j->packets->nodes[i], k, &e[k].box);
             j->packets->packets[i].poly[k] = e[k].poly;
         }
         fill_corners(j->scene, &j->packets->packets[i]);
@@ -331,30 +313,16 @@ static void plan_levels(gnoi_packets *packets)
     }
 }
 
-static gnoi_lbox box_of_node(const gnoi_packet_boxes *node)
-{
-    gnoi_lbox box = {FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX};
-    for (int k = 0; k < GNOI_PACKET; k++) {
-        box.u0 = node->u0[k] < box.u0 ? node->u0[k] : box.u0;
-        box.u1 = node->u1[k] > box.u1 ? node->u1[k] : box.u1;
-        box.v0 = node->v0[k] < box.v0 ? node->v0[k] : box.v0;
-        box.v1 = node->v1[k] > box.v1 ? node->v1[k] : box.v1;
-        box.z0 = node->z0[k] < box.z0 ? node->z0[k] : box.z0;
-        box.z1 = node->z1[k] > box.z1 ? node->z1[k] : box.z1;
-    }
-    return box;
-}
-
 static void fill_levels(gnoi_packets *packets)
 {
     for (int level = 1; level < packets->levels; level++) {
         size_t below = packets->level_first[level - 1], first = packets->level_first[level];
         size_t end = level + 1 < packets->levels ? packets->level_first[level + 1] : packets->node_count;
         for (size_t i = first; i < end; i++)
-            clear_boxes(&packets->nodes[i]);
+            gnoi_eight_clear(&packets->nodes[i]);
         for (size_t i = below; i < first; i++) {
-            gnoi_lbox box = box_of_node(&packets->nodes[i]);
-            set_box(&packets->nodes[first + (i - below) / GNOI_PACKET], (i - below) % GNOI_PACKET, &box);
+            gnoi_lbox box = gnoi_eight_union(&packets->nodes[i]);
+            gnoi_eight_set(&packets->nodes[first + (i - below) / GNOI_PACKET], (i - below) % GNOI_PACKET, &box);
         }
     }
 }
@@ -447,7 +415,7 @@ int gnoi_packets_find(gno_context *context, const gnoi_packets *packets, const g
     while (top > 0) {
         int level = stack[--top].level;
         uint32_t node = stack[top].node;
-        unsigned mask = gnoi_packet_meet(&packets->nodes[packets->level_first[level] + node], box);
+        unsigned mask = gnoi_eight_meet(&packets->nodes[packets->level_first[level] + node], box);
         if (level > 0) {
             for (; mask; mask &= mask - 1) {
                 stack[top].level = level - 1;

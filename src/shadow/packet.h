@@ -12,20 +12,12 @@
 #define GNOI_SHADOW_PACKET_H
 
 #include "scene/scene.h"
-#include "shadow/frame.h"
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
+#include "shadow/eight.h"
 
-#define GNOI_PACKET 8
+#define GNOI_PACKET GNOI_EIGHT
 #define GNOI_PACKET_LEVELS 12
 #define GNOI_PACKET_CORNERS 4
 #define GNOI_RUN 4096 /* a power of 8, so that each half is whole packets and whole nodes */
-
-typedef struct gnoi_packet_boxes {
-    float u0[GNOI_PACKET], u1[GNOI_PACKET], v0[GNOI_PACKET], v1[GNOI_PACKET];
-    float z0[GNOI_PACKET], z1[GNOI_PACKET]; /* depth from the light */
-} gnoi_packet_boxes;
 
 /* Corners in scene space relative to the packet's origin, component by component, so that one test runs over all eight. A polygon
  * with more corners than there is room for stands with four points on its plane whose hull holds it. */
@@ -45,7 +37,7 @@ typedef struct gnoi_packets {
     int levels; /* the last level is one node; 0 without polygons */
     size_t level_first[GNOI_PACKET_LEVELS];
     size_t node_count;
-    gnoi_packet_boxes *nodes;
+    gnoi_eight *nodes;
 } gnoi_packets;
 
 /* A polygon's box on its way into a packet. */
@@ -70,41 +62,8 @@ typedef struct gnoi_packet_list {
 
 int gnoi_packets_find(gno_context *context, const gnoi_packets *packets, const gnoi_lbox *box, gnoi_packet_list *found);
 
-/* Bit k: entry k's box meets `box` and does not begin behind its farthest depth. */
-static inline unsigned gnoi_packet_meet(const gnoi_packet_boxes *node, const gnoi_lbox *q)
-{
-    unsigned mask = 0;
-#if defined(__SSE2__)
-    __m128 u0 = _mm_set1_ps(q->u0), u1 = _mm_set1_ps(q->u1), w0 = _mm_set1_ps(q->v0), w1 = _mm_set1_ps(q->v1);
-    __m128 z1 = _mm_set1_ps(q->z1);
-    for (int k = 0; k < GNOI_PACKET; k += 4) {
-        __m128 u = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->u0 + k), u1), _mm_cmpge_ps(_mm_loadu_ps(node->u1 + k), u0));
-        __m128 w = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->v0 + k), w1), _mm_cmpge_ps(_mm_loadu_ps(node->v1 + k), w0));
-        __m128 z = _mm_cmple_ps(_mm_loadu_ps(node->z0 + k), z1);
-        mask |= (unsigned)_mm_movemask_ps(_mm_and_ps(_mm_and_ps(u, w), z)) << k;
-    }
-#else
-    for (int k = 0; k < GNOI_PACKET; k++)
-        mask |= (unsigned)(node->u0[k] <= q->u1 && node->u1[k] >= q->u0 && node->v0[k] <= q->v1 && node->v1[k] >= q->v0 &&
-                           node->z0[k] <= q->z1) << k;
-#endif
-    return mask;
-}
-
 /* Up to four points on the polygon's plane whose hull contains it: its own corners where it has no more (1 is returned in *exact), a
  * rectangle otherwise. Returns their number. */
 int gnoi_poly_points(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_PACKET_CORNERS], int *exact);
-
-static inline unsigned gnoi_lowest_bit(unsigned mask)
-{
-#if defined(__GNUC__)
-    return (unsigned)__builtin_ctz(mask);
-#else
-    unsigned k = 0;
-    while (!(mask >> k & 1))
-        k++;
-    return k;
-#endif
-}
 
 #endif

@@ -1,11 +1,7 @@
 /* tree.c -- see tree.h. */
 #include "shadow/tree.h"
 #include "base/sort.h"
-#include <float.h>
 #include <string.h>
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
 
 /* Classes of size, each this many times smaller than the one before. */
 #define SIZE_CLASSES 8
@@ -224,38 +220,6 @@ static void set_leaf(const gno_scene *scene, const gnoi_tree *tree, size_t index
 
 /* ---- packing ---------------------------------------------------------------------------------------------------- */
 
-static void node_clear(gnoi_tree_node *node)
-{
-    for (int k = 0; k < GNOI_TREE_FAN; k++) {
-        node->u0[k] = node->v0[k] = node->z0[k] = FLT_MAX;
-        node->u1[k] = node->v1[k] = node->z1[k] = -FLT_MAX;
-    }
-}
-
-static void node_set(gnoi_tree_node *node, size_t k, const gnoi_lbox *box)
-{
-    node->u0[k] = box->u0;
-    node->u1[k] = box->u1;
-    node->v0[k] = box->v0;
-    node->v1[k] = box->v1;
-    node->z0[k] = box->z0;
-    node->z1[k] = box->z1;
-}
-
-static void node_set_union(gnoi_tree_node *node, size_t k, const gnoi_tree_node *child)
-{
-    gnoi_lbox all = {FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX};
-    for (int i = 0; i < GNOI_TREE_FAN; i++) {
-        all.u0 = child->u0[i] < all.u0 ? child->u0[i] : all.u0;
-        all.u1 = child->u1[i] > all.u1 ? child->u1[i] : all.u1;
-        all.v0 = child->v0[i] < all.v0 ? child->v0[i] : all.v0;
-        all.v1 = child->v1[i] > all.v1 ? child->v1[i] : all.v1;
-        all.z0 = child->z0[i] < all.z0 ? child->z0[i] : all.z0;
-        all.z1 = child->z1[i] > all.z1 ? child->z1[i] : all.z1;
-    }
-    node_set(node, k, &all);
-}
-
 static void plan_levels(gnoi_tree *tree)
 {
     size_t n = tree->entry_count;
@@ -276,10 +240,10 @@ static size_t leaf_count(const gnoi_tree *tree) { return (tree->entry_count + GN
 static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, const gnoi_keyed *keys)
 {
     for (size_t i = 0; i < tree->node_count; i++)
-        node_clear(&tree->nodes[i]);
+        gnoi_eight_clear(&tree->nodes[i]);
     for (size_t i = 0; i < tree->entry_count; i++) {
         tree->caster[i] = b->number[keys[i].value];
-        node_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, &b->box[keys[i].value]);
+        gnoi_eight_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, &b->box[keys[i].value]);
     }
     for (size_t i = 0; tree->leaves && i < leaf_count(tree); i++) {
         set_leaf(scene, tree, i, &tree->leaves[i]);
@@ -288,8 +252,10 @@ static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, c
     }
     for (int level = 1; level < tree->levels; level++) {
         size_t below = tree->level_first[level - 1], first = tree->level_first[level];
-        for (size_t i = below; i < first; i++)
-            node_set_union(&tree->nodes[first + (i - below) / GNOI_TREE_FAN], (i - below) % GNOI_TREE_FAN, &tree->nodes[i]);
+        for (size_t i = below; i < first; i++) {
+            const gnoi_lbox box = gnoi_eight_union(&tree->nodes[i]);
+            gnoi_eight_set(&tree->nodes[first + (i - below) / GNOI_TREE_FAN], (i - below) % GNOI_TREE_FAN, &box);
+        }
     }
     return 1;
 }
@@ -351,27 +317,6 @@ void gnoi_tree_free(gno_context *context, gnoi_tree *tree)
 
 /* ---- query ------------------------------------------------------------------------------------------------------ */
 
-/* Bit k: child k's box meets the query's. */
-static unsigned meet_mask(const gnoi_tree_node *node, const gnoi_lbox *q)
-{
-    unsigned mask = 0;
-#if defined(__SSE2__)
-    __m128 u0 = _mm_set1_ps(q->u0), u1 = _mm_set1_ps(q->u1), w0 = _mm_set1_ps(q->v0), w1 = _mm_set1_ps(q->v1);
-    __m128 z1 = _mm_set1_ps(q->z1);
-    for (int k = 0; k < GNOI_TREE_FAN; k += 4) {
-        __m128 u = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->u0 + k), u1), _mm_cmpge_ps(_mm_loadu_ps(node->u1 + k), u0));
-        __m128 w = _mm_and_ps(_mm_cmple_ps(_mm_loadu_ps(node->v0 + k), w1), _mm_cmpge_ps(_mm_loadu_ps(node->v1 + k), w0));
-        __m128 z = _mm_cmple_ps(_mm_loadu_ps(node->z0 + k), z1);
-        mask |= (unsigned)_mm_movemask_ps(_mm_and_ps(_mm_and_ps(u, w), z)) << k;
-    }
-#else
-    for (int k = 0; k < GNOI_TREE_FAN; k++)
-        mask |= (unsigned)(node->u0[k] <= q->u1 && node->u1[k] >= q->u0 && node->v0[k] <= q->v1 && node->v1[k] >= q->v0 &&
-                           node->z0[k] <= q->z1) << k;
-#endif
-    return mask;
-}
-
 /* Bit k: triangle k of the leaf is not ruled out by the probe. Edges first, one comparison for all eight at a time. */
 static unsigned probe_mask(const gnoi_tree_leaf *leaf, const gnoi_probe *probe)
 {
@@ -396,18 +341,6 @@ static unsigned probe_mask(const gnoi_tree_leaf *leaf, const gnoi_probe *probe)
     for (int k = 0; k < GNOI_TREE_FAN; k++)
         mask |= (unsigned)!behind[k] << k;
     return mask;
-}
-
-static unsigned lowest_bit(unsigned mask)
-{
-#if defined(__GNUC__)
-    return (unsigned)__builtin_ctz(mask);
-#else
-    unsigned k = 0;
-    while (!(mask >> k & 1))
-        k++;
-    return k;
-#endif
 }
 
 static int list_room(gno_context *context, gnoi_list *list, size_t more)
@@ -438,16 +371,16 @@ int gnoi_tree_gather(gno_context *context, const gnoi_tree *tree, const gnoi_lbo
             front->nodes.items[front->nodes.count++] = node;
             continue;
         }
-        for (unsigned mask = meet_mask(&tree->nodes[tree->level_first[level] + node], box); mask; mask &= mask - 1) {
+        for (unsigned mask = gnoi_eight_meet(&tree->nodes[tree->level_first[level] + node], box); mask; mask &= mask - 1) {
             stack[top].level = level - 1;
-            stack[top++].node = node * GNOI_TREE_FAN + lowest_bit(mask);
+            stack[top++].node = node * GNOI_TREE_FAN + gnoi_lowest_bit(mask);
         }
     }
     return 1;
 }
 
 /* Bit k: child k ends before depth z. */
-static unsigned before_mask(const gnoi_tree_node *node, float z)
+static unsigned before_mask(const gnoi_eight *node, float z)
 {
     unsigned mask = 0;
 #if defined(__SSE2__)
@@ -472,8 +405,8 @@ typedef struct query {
 
 static int query_node(const query *q, int level, uint32_t node)
 {
-    const gnoi_tree_node *n = &q->tree->nodes[q->tree->level_first[level] + node];
-    unsigned mask = meet_mask(n, q->box);
+    const gnoi_eight *n = &q->tree->nodes[q->tree->level_first[level] + node];
+    unsigned mask = gnoi_eight_meet(n, q->box);
     if (level == 0 && mask) {
         if (q->probe)
             mask &= probe_mask(&q->tree->leaves[node], q->probe);
@@ -486,7 +419,7 @@ static int query_node(const query *q, int level, uint32_t node)
         mask &= ~before;
     }
     for (; mask; mask &= mask - 1) {
-        uint32_t child = node * GNOI_TREE_FAN + lowest_bit(mask);
+        uint32_t child = node * GNOI_TREE_FAN + gnoi_lowest_bit(mask);
         if (level == 0)
             q->found->items[q->found->count++] = q->tree->caster[child];
         else if (!query_node(q, level - 1, child))

@@ -12,15 +12,10 @@
 #define GNOI_SHADOW_TREE_H
 
 #include "scene/scene.h"
-#include "shadow/frame.h"
+#include "shadow/eight.h"
 
-#define GNOI_TREE_FAN 8
+#define GNOI_TREE_FAN GNOI_EIGHT
 #define GNOI_TREE_LEVELS 12
-
-typedef struct gnoi_tree_node {
-    float u0[GNOI_TREE_FAN], u1[GNOI_TREE_FAN], v0[GNOI_TREE_FAN], v1[GNOI_TREE_FAN];
-    float z0[GNOI_TREE_FAN], z1[GNOI_TREE_FAN]; /* nearest and farthest depth from the light */
-} gnoi_tree_node;
 
 /* The corners of a lowest node's triangles, relative to an origin near them for the sake of precision. Children that are no
  * triangle on one face have a NaN: every comparison fails, nothing is ruled out. */
@@ -46,7 +41,7 @@ typedef struct gnoi_tree {
     int levels;        /* level 0 holds the entries' boxes; the last level is one node */
     size_t level_first[GNOI_TREE_LEVELS];
     size_t node_count;
-    gnoi_tree_node *nodes;
+    gnoi_eight *nodes;
     gnoi_tree_leaf *leaves; /* one for each node of level 0; NULL in a tree of edges */
 } gnoi_tree;
 
