@@ -36,8 +36,9 @@ static const option options[] = {
                                        "as windows on uncut walls, are drawn on them; or none; instead of\n"
                                        "what the scene's meshes ask for"},
     [ENGINE] = {"engine", 0, "NAME", "scanline (default); weiler-atherton: visible pieces as polygons, painted\n"
-                                 "with exact coverage (--lines has no meaning there)"},
-    [AOV] = {"aov", 0, "LIST", "layers beside the picture in .exr files, with commas between:\n" LAYER_NAMES},
+                                 "with exact coverage (--lines has no meaning there; scenes with softness or\n"
+                                 "holes of textures are drawn by 16 sample lines, with a warning)"},
+    [AOV] = {"aov", 0, "LIST", "layers beside the picture in .exr files (scanline engine only), with commas between:\n" LAYER_NAMES},
     [RANKS] = {"ranks", 0, "N", "pairs of id and coverage in each pixel for the layers polygon,\n"
                                 "object and material (6)"},
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. camera.eye=[1,2,3]; may be given\n"

@@ -15,9 +15,6 @@ void gnoi_frame_job_free(gnoi_frame_job *frame);
 /* weiler_atherton.c: paints what the camera sees as pieces (gno_visible_pieces) into frame->rgb. */
 gno_status gnoi_paint_visible(gno_scene *scene, gnoi_frame_job *frame, gno_stats *stats);
 
-/* weiler_atherton.c: whether pieces can bound the scene's shadows: not those that weaken with distance, nor those of textures with holes. */
-int gnoi_shadows_have_edges(const gno_scene *scene);
-
 /* weiler_atherton.c: the mean colour of each piece, 3 values each, as it appears in the picture; zeros for one that covers nothing. */
 gno_status gnoi_paint_means(gnoi_frame_job *frame, const gno_pieces *pieces, double *means);
 

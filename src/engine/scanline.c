@@ -6,6 +6,7 @@
 #include "engine/bands.h"
 #include "engine/job.h"
 #include "scene/validate.h"
+#include "shadow/lamp.h"
 #include <string.h>
 
 gno_render_def gno_render_def_default(void)

@@ -5,7 +5,7 @@
  */
 #include "engine/tile.h"
 
-/* Parts shorter than this, in pixels, carry no light worth a sample: see LEAK_LENGTH of tile_rows.c. */
+/* Parts shorter than this, in pixels, carry no light worth a sample: see GNOI_LEAK_LENGTH of tile.h. */
 #define LEAST_LENGTH (2.0 / GNOI_X_ONE)
 
 /* Puts the column's intervals that meet (x0,x1) to the head of the list; returns how many do. */

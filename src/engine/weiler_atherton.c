@@ -469,17 +469,6 @@ static gno_status work_on_tiles(paint_job *job, gno_stats *stats)
     return status;
 }
 
-int gnoi_shadows_have_edges(const gno_scene *scene)
-{
-    for (size_t i = 0; i < scene->light_count; i++)
-        if (scene->lights[i].light.softness > 0)
-            return 0;
-    for (size_t i = 0; i < scene->material_count; i++)
-        if (gnoi_has_holes(scene, &scene->materials[i]))
-            return 0;
-    return 1;
-}
-
 /* The set of pieces, and what it has beside, onto the picture. */
 static gno_status job_make(paint_job *job, const gnoi_frame_job *frame, const gno_pieces *pieces)
 {

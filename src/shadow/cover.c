@@ -419,7 +419,7 @@ static cast cast_polygon(const gnoi_canvas *canvas, gnoi_cover *cover, const reg
 {
     const gnoi_prepared *prep = &canvas->centre->scene->prepared;
     const gnoi_poly *poly = &prep->polys[index];
-    size_t ring = shape->ring_count, points = shape->point_count;
+    size_t ring = shape->ring_count;
     for (uint32_t k = 0; k < poly->ring_count; k++) {
         cast c = cast_ring(canvas, cover, to, index, over, &prep->ring_corner[poly->ring + k], shape);
         if (c == CAST_NO_MEMORY || (c == CAST_ALL && canvas->centre->stands[index].hides == 1))
@@ -438,10 +438,6 @@ static cast cast_polygon(const gnoi_canvas *canvas, gnoi_cover *cover, const reg
         }
         if (k == 0 && shape->ring_count == ring)
             return CAST_NOTHING;
-    }
-    if (shape->ring_count == ring) {
-        gnoi_shape_cut(shape, shape->polygon_count, ring, points);
-        return CAST_NOTHING;
     }
     return gnoi_shape_end_polygon(shape, ring) ? CAST_PART : CAST_NO_MEMORY;
 }

@@ -73,3 +73,22 @@ int gnoi_lamp_outside(const gno_scene *scene, size_t solid, const gnoi_lamp *lam
         return gnoi_solid_outside(scene, solid, lamp->position);
     return cap == GNOI_NONE || v3_dot(v3_from(scene->prepared.polys[cap].n), lamp->to_light) < 0;
 }
+
+int gnoi_shadows_have_edges(const gno_scene *scene)
+{
+    for (size_t i = 0; i < scene->light_count; i++)
+        if (scene->lights[i].light.softness > 0)
+            return 0;
+    for (size_t i = 0; i < scene->material_count; i++)
+        if (gnoi_has_holes(scene, &scene->materials[i]))
+            return 0;
+    return 1;
+}
+
+int gnoi_lamp_is_first(const gno_scene *scene, size_t light)
+{
+    size_t first = 0;
+    for (size_t i = 0; i < scene->light_count && first < light; i++)
+        first += gnoi_lamp_count(&scene->lights[i].light);
+    return first == light;
+}

@@ -24,4 +24,10 @@ void gnoi_lamps_fill(const gno_scene *scene, gnoi_lamp *lamps);
 /* 1 when the lamp is certainly outside a closed solid, and on the inner side of its cap. */
 int gnoi_lamp_outside(const gno_scene *scene, size_t solid, const gnoi_lamp *lamp);
 
+/* Whether pieces can bound the scene's shadows: not those that weaken with distance, nor those of textures with holes. */
+int gnoi_shadows_have_edges(const gno_scene *scene);
+
+/* 1 when the expanded light is the first, or the only, point of its light. */
+int gnoi_lamp_is_first(const gno_scene *scene, size_t light);
+
 #endif

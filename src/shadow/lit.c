@@ -454,6 +454,8 @@ gno_status gno_lit_pieces(gno_scene *scene, size_t light, const gno_lit_def *def
     status = light > GNO_MAX_LIGHTS ? gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "light %lu: there is none", (unsigned long)light)
                                     : run(&j, &used, pieces, rows, &sum);
     job_free(&j);
+    if (!status && gnoi_lamp_is_first(scene, light) && !gnoi_shadows_have_edges(scene))
+        gnoi_warn(scene->context, "shadows that weaken with distance or fall through the holes of textures are taken as whole ones");
     if (summary && !status)
         *summary = sum;
     return status == GNO_ERROR_MEMORY ? gnoi_fail(scene->context, status, "out of memory for the lit pieces") : status;

@@ -298,11 +298,6 @@ gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, c
     return status;
 }
 
-gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *tree)
-{
-    return gnoi_tree_build_part(scene, lamp, halved, GNOI_TREE_ALL, tree);
-}
-
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree)
 {
     gnoi_free(context, tree->caster, tree->entry_count, sizeof *tree->caster);

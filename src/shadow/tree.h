@@ -71,7 +71,6 @@ typedef enum gnoi_tree_part {
 } gnoi_tree_part;
 
 /* Builds the tree of the polygons that let less than all light through. */
-gno_status gnoi_tree_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *tree);
 gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree_part part,
                                 gnoi_tree *tree);
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree);

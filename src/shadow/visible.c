@@ -608,16 +608,30 @@ gno_visible_def gno_visible_def_default(void)
     return def;
 }
 
+/* 1 when each of the pieces is of expanded light `light` alone: what gno_lit_pieces makes. */
+static int is_lit_by(const gno_pieces *pieces, size_t light)
+{
+    for (size_t i = 0; i < pieces->list.count; i++) {
+        const gnoi_piece *piece = &pieces->list.pieces[i];
+        if (piece->light_count != 1 || pieces->list.lights[piece->light] != light)
+            return 0;
+    }
+    return 1;
+}
+
 static gno_status check(const gno_scene *scene, const gno_visible_def *def, size_t lamps)
 {
     if (def->threads < 0 || def->threads > GNO_MAX_THREADS)
         return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "threads: %d is not from 0 to %d", def->threads, GNO_MAX_THREADS);
     if (lamps > GNO_MAX_LIGHTS)
         return gnoi_fail(scene->context, GNO_ERROR_LIMIT, "%lu points of light in all; the limit is %d", (unsigned long)lamps, GNO_MAX_LIGHTS);
-    for (size_t i = 0; def->lit && i < lamps; i++)
+    for (size_t i = 0; def->lit && i < lamps; i++) {
         if (def->lit[i] && def->lit[i]->polygon_count != scene->polygon_count)
             return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "lit[%lu]: pieces of %lu polygons, the scene has %lu", (unsigned long)i,
                              (unsigned long)def->lit[i]->polygon_count, (unsigned long)scene->polygon_count);
+        if (def->lit[i] && !is_lit_by(def->lit[i], i))
+            return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "lit[%lu]: not the lit pieces of light %lu", (unsigned long)i, (unsigned long)i);
+    }
     return GNO_OK;
 }
 
