@@ -6,6 +6,7 @@
 
 #include "cli/interrupt.h"
 #include "cli/options.h"
+#include "cli/outputs.h"
 #include "cli/progress.h"
 
 #include <stdio.h>
@@ -125,7 +126,11 @@ static int read_arguments(job *work, int argc, char **argv)
     if (work->stats_path != NULL && strcmp(work->stats_path, "-") == 0 && strcmp(work->table_path, "-") == 0) {
         return usage("lit", "standard output cannot take both the table and --stats");
     }
-    return -1;
+    int status = output_check_place(work->table_path);
+    for (int i = 0; i < (int)work->piece_files && status == EXIT_DONE; i++) {
+        status = output_check_place(work->piece_paths[i]);
+    }
+    return status == EXIT_DONE ? -1 : status;
 }
 
 static int report(gno_context *context, progress *shown)

@@ -93,7 +93,7 @@ static int parse_colour(char *text, double colour[3])
         if (!parse_real(rest, &colour[k]) || colour[k] < 0.0) {
             return 0;
         }
-        rest = comma + 1;
+        rest = comma != NULL ? comma + 1 : rest;
     }
     return 1;
 }

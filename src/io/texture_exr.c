@@ -43,13 +43,18 @@ static int place_of(const decoder *d, const char *name)
 static exr_result_t find_channels(decoder *d)
 {
     const exr_attr_chlist_t *list = NULL;
-    int has_colour = 0, has_alpha = 0;
+    int has_colour = 0, has_grey = 0, has_alpha = 0;
     exr_result_t result = exr_get_channels(d->exr, 0, &list);
     if (result != EXR_ERR_SUCCESS) return result;
     for (int i = 0; i < list->num_channels; i++) {
         const char *name = list->entries[i].name.str;
         has_colour |= strcmp(name, "R") == 0 || strcmp(name, "G") == 0 || strcmp(name, "B") == 0;
+        has_grey |= strcmp(name, "Y") == 0;
         has_alpha |= strcmp(name, "A") == 0;
+    }
+    if (!has_colour && !has_grey) {
+        snprintf(d->message, sizeof d->message, "no channels R, G, B or Y");
+        return EXR_ERR_INVALID_ARGUMENT;
     }
     d->is_grey = !has_colour;
     d->raster->channels = (has_colour ? 3 : 1) + has_alpha;
