@@ -142,7 +142,11 @@ static gno_status get_picture(gnoi_assimp *a, const struct aiMaterial *from, enu
     embedded = find_embedded(a, path.data);
     request->beside = a->path;
     request->name = path.data;
-    if (embedded && embedded->mHeight == 0) {
+    if (embedded && embedded->mHeight != 0) {
+        gnoi_mesh_warn(a->context, a->path, 0, "texture %.200s lies in the file without compression: drawn without it", path.data);
+        return GNO_OK;
+    }
+    if (embedded) {
         request->data = embedded->pcData;
         request->data_size = embedded->mWidth;
     }
@@ -157,6 +161,8 @@ static gno_status get_picture(gnoi_assimp *a, const struct aiMaterial *from, enu
     texture->kind = GNO_TEXTURE_IMAGE;
     texture->image = image;
     texture->wrap = wrap_of(modes[0]);
+    if (modes[1] != modes[0])
+        gnoi_mesh_warn(a->context, a->path, 0, "texture %.200s repeats otherwise upwards than across: drawn as across", path.data);
     return GNO_OK;
 }
 

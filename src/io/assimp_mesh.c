@@ -9,6 +9,7 @@
  * a tolerance, which eats small triangles.
  */
 #include "assimp_file.h"
+#include "file_name.h"
 #include <assimp/cimport.h>
 #include <assimp/config.h>
 #include <errno.h>
@@ -186,7 +187,7 @@ static gno_status fill_arrays(gnoi_assimp *a, const struct aiMesh *mesh, mesh_ar
 static gno_mesh_def make_def(const gnoi_assimp *a, const struct aiMesh *mesh, const gnoi_affine *transform, const mesh_arrays *m)
 {
     gno_mesh_def def = gnoi_mesh_def_for(a->options);
-    if (!def.name) def.name = mesh->mName.length > 0 ? mesh->mName.data : gnoi_mesh_base_name(a->path);
+    if (!def.name) def.name = mesh->mName.length > 0 ? mesh->mName.data : gnoi_base_name(a->path);
     memcpy(def.transform, transform->m, sizeof def.transform);
     def.vertex_count = m->distinct_count;
     def.positions = m->positions;
@@ -255,30 +256,16 @@ static gno_status add_node(gnoi_assimp *a, const struct aiNode *node, const gnoi
 
 /* ---- the file ----------------------------------------------------------------------------------------------- */
 
-static char lower(char c)
-{
-    return c >= 'A' && c <= 'Z' ? (char)(c - 'A' + 'a') : c;
-}
-
-static int has_extension(const char *path, const char *extension)
-{
-    size_t length = strlen(path), count = strlen(extension);
-    if (length < count) return 0;
-    for (size_t i = 0; i < count; i++)
-        if (lower(path[length - count + i]) != extension[i]) return 0;
-    return 1;
-}
-
 static gno_status check_file(const gnoi_assimp *a)
 {
-    const char *dot = strrchr(gnoi_mesh_base_name(a->path), '.');
-    if (!dot || !aiIsExtensionSupported(dot))
+    const char *extension = gnoi_extension(a->path);
+    if (!extension[0] || !aiIsExtensionSupported(extension))
         return gnoi_mesh_fail(a->context, GNO_ERROR_FILE, a->path, 0,
                               "not a mesh format by its extension (.obj .ply .stl .gltf .glb and others)");
     FILE *file = fopen(a->path, "rb");
     if (!file) return gnoi_mesh_fail(a->context, GNO_ERROR_FILE, a->path, 0, "cannot open: %s", strerror(errno));
     fclose(file);
-    return has_extension(a->path, ".ply") ? gnoi_ply_check(a->context, a->path) : GNO_OK;
+    return gnoi_has_extension(a->path, ".ply") ? gnoi_ply_check(a->context, a->path) : GNO_OK;
 }
 
 /* NULL after a failure; the text is then aiGetErrorString's. */
@@ -319,9 +306,9 @@ gno_status gnoi_assimp_load(gno_scene *scene, const char *path, const gnoi_mesh_
     a.path = path;
     a.options = options;
     a.result = result;
-    a.is_gltf = has_extension(path, ".gltf") || has_extension(path, ".glb");
-    a.is_stl = has_extension(path, ".stl");
-    a.is_geometry = a.is_stl || has_extension(path, ".ply") || has_extension(path, ".off");
+    a.is_gltf = gnoi_has_extension(path, ".gltf") || gnoi_has_extension(path, ".glb");
+    a.is_stl = gnoi_has_extension(path, ".stl");
+    a.is_geometry = a.is_stl || gnoi_has_extension(path, ".ply") || gnoi_has_extension(path, ".off");
     gno_status status = check_file(&a);
     if (status != GNO_OK) return status;
     a.file = import(path);

@@ -1,6 +1,8 @@
 /* cryptomatte.c -- see cryptomatte.h. */
 #include "io/cryptomatte.h"
 
+#include "io/text_file.h"
+
 #include <stdio.h>
 #include <string.h>
 
@@ -62,22 +64,12 @@ static void append(gnoi_manifest *m, const char *text, size_t length)
     m->length += length;
 }
 
-/* A JSON string; bytes from 128 on are UTF-8 and stay. */
 static void append_string(gnoi_manifest *m, const char *text)
 {
+    char escaped[GNOI_JSON_LONGEST];
     append(m, "\"", 1);
     for (; *text != '\0'; text++) {
-        const unsigned char c = (unsigned char)*text;
-        char escaped[8];
-        if (c == '"' || c == '\\') {
-            append(m, "\\", 1);
-        }
-        if (c < 32 || c == 127) {
-            snprintf(escaped, sizeof escaped, "\\u%04x", (unsigned)c);
-            append(m, escaped, strlen(escaped));
-        } else {
-            append(m, text, 1);
-        }
+        append(m, escaped, gnoi_json_byte(*text, escaped));
     }
     append(m, "\"", 1);
 }

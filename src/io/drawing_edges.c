@@ -22,6 +22,7 @@
 /* An edge of a polygon: its ends in order, and which way the polygon runs along it. */
 typedef struct edge {
     double a[3], b[3];
+    double line[3]; /* through its ends in the picture: line[0] x + line[1] y + line[2] is the distance from it in pixels */
     size_t polygon;
     int forwards;
     gno_vector_edges kind; /* NONE: to be drawn with none, or by another polygon */
@@ -197,6 +198,37 @@ static int list_by_polygon(edge_table *t)
     return 1;
 }
 
+static void set_line(double l[3], const double *p, const double *q)
+{
+    l[0] = p[1] * q[2] - p[2] * q[1];
+    l[1] = p[2] * q[0] - p[0] * q[2];
+    l[2] = p[0] * q[1] - p[1] * q[0];
+    const double length = sqrt(l[0] * l[0] + l[1] * l[1]);
+    for (int k = 0; k < 3 && length > 0; k++) {
+        l[k] /= length;
+    }
+}
+
+/* The lines of all edges in the picture, a few hundred at a time: a projection looks at the whole camera first. */
+static gno_status find_lines(edge_table *t)
+{
+    enum { AT_ONCE = 256 };
+    double ends[AT_ONCE][6], picture[AT_ONCE][6];
+    gno_status status = GNO_OK;
+    for (size_t first = 0, n; first < t->edges.count && status == GNO_OK; first += n) {
+        edge *e = (edge *)t->edges.data + first;
+        for (n = 0; n < AT_ONCE && first + n < t->edges.count; n++) {
+            memcpy(ends[n], e[n].a, sizeof e[n].a);
+            memcpy(ends[n] + 3, e[n].b, sizeof e[n].b);
+        }
+        status = gno_project_points(t->drawing->scene, 2 * n, ends[0], picture[0]);
+        for (size_t i = 0; i < n && status == GNO_OK; i++) {
+            set_line(e[i].line, picture[i], picture[i] + 3);
+        }
+    }
+    return status;
+}
+
 static gno_status fill_table(edge_table *t)
 {
     for (size_t i = 0; i < t->facet_count; i++) {
@@ -217,28 +249,10 @@ static gno_status fill_table(edge_table *t)
         }
         settle(t, edges + i, n);
     }
-    return list_by_polygon(t) ? GNO_OK : gnoi_drawing_no_memory(t->drawing);
+    return list_by_polygon(t) ? find_lines(t) : gnoi_drawing_no_memory(t->drawing);
 }
 
 /* ---- outlines ------------------------------------------------------------------------------------------------------------ */
-
-/* The line through an edge's ends in the picture: l[0] x + l[1] y + l[2] is the distance from it in pixels. */
-static gno_status line_of(const edge_table *t, const edge *e, double l[3])
-{
-    double ends[6], picture[6];
-    memcpy(ends, e->a, sizeof e->a);
-    memcpy(ends + 3, e->b, sizeof e->b);
-    const gno_status status = gno_project_points(t->drawing->scene, 2, ends, picture);
-    const double *p = picture, *q = picture + 3;
-    l[0] = p[1] * q[2] - p[2] * q[1];
-    l[1] = p[2] * q[0] - p[0] * q[2];
-    l[2] = p[0] * q[1] - p[1] * q[0];
-    const double length = sqrt(l[0] * l[0] + l[1] * l[1]);
-    for (int k = 0; k < 3 && length > 0; k++) {
-        l[k] /= length;
-    }
-    return status;
-}
 
 /* Whether a scene point lies between the ends of an edge, along it. */
 static int between(const edge *e, const double *point)
@@ -262,14 +276,13 @@ static gno_status sort_sides(edge_table *t, outline *o, size_t polygon, const do
 {
     gno_vector_edges *kinds = o->kinds.data;
     double *picture = o->places.data;
-    gno_status status = gno_project_points(t->drawing->scene, count, points, picture);
+    const gno_status status = gno_project_points(t->drawing->scene, count, points, picture);
     for (size_t i = 0; i < count; i++) {
         kinds[i] = GNO_EDGES_ALL;
     }
     for (size_t k = t->facets[polygon].first_edge; k < t->facets[polygon + 1].first_edge && status == GNO_OK; k++) {
         const edge *e = (const edge *)t->edges.data + t->of_polygon[k];
-        double l[3];
-        status = line_of(t, e, l);
+        const double *l = e->line;
         for (size_t i = 0; i < count; i++) {
             const size_t j = (i + 1) % count;
             const double *p = picture + 3 * i, *q = picture + 3 * j;

@@ -2,6 +2,7 @@
  *
  * Place: called by scene_yaml.c (object entries) and scene_load.c (a mesh file as a scene); calls obj.c or assimp_mesh.c.
  */
+#include "file_name.h"
 #include "mesh_util.h"
 #include <string.h>
 
@@ -18,12 +19,6 @@ gnoi_mesh_options gnoi_mesh_options_default(void)
     memcpy(options.transform, def.transform, sizeof options.transform);
     options.priority = def.priority;
     return options;
-}
-
-const char *gnoi_mesh_base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
 }
 
 gno_mesh_def gnoi_mesh_def_for(const gnoi_mesh_options *options)
@@ -64,12 +59,6 @@ gno_status gnoi_mesh_add(gno_scene *scene, const char *path, const gno_mesh_def 
     return GNO_OK;
 }
 
-static int is_obj(const char *path)
-{
-    const char *dot = strrchr(gnoi_mesh_base_name(path), '.');
-    return dot && (dot[1] | 0x20) == 'o' && (dot[2] | 0x20) == 'b' && (dot[3] | 0x20) == 'j' && dot[4] == '\0';
-}
-
 gno_status gnoi_mesh_load(gno_scene *scene, const char *path, const gnoi_mesh_options *options, gnoi_mesh_result *result)
 {
     gnoi_mesh_options defaults = gnoi_mesh_options_default();
@@ -77,7 +66,7 @@ gno_status gnoi_mesh_load(gno_scene *scene, const char *path, const gnoi_mesh_op
     if (!options) options = &defaults;
     if (!result) result = &ignored;
     memset(result, 0, sizeof *result);
-    gno_status status = is_obj(path) ? gnoi_obj_load(scene, path, options, result)
+    gno_status status = gnoi_has_extension(path, ".obj") ? gnoi_obj_load(scene, path, options, result)
                                      : gnoi_assimp_load(scene, path, options, result);
     if (status != GNO_OK) return status;
     if (result->polygon_count == 0)

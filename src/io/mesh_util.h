@@ -75,9 +75,6 @@ gno_status gnoi_mesh_add(gno_scene *scene, const char *path, const gno_mesh_def 
 /* A failure that the scene has reported, with the path put in front of its message: the file is to blame. */
 gno_status gnoi_mesh_blame(gno_scene *scene, const char *path, gno_status status);
 
-/* The part of a path after the last slash. */
-const char *gnoi_mesh_base_name(const char *path);
-
 /* The readers; options and result are given, path exists or not. */
 gno_status gnoi_obj_load(gno_scene *scene, const char *path, const gnoi_mesh_options *options, gnoi_mesh_result *result);
 gno_status gnoi_assimp_load(gno_scene *scene, const char *path, const gnoi_mesh_options *options, gnoi_mesh_result *result);

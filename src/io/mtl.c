@@ -6,6 +6,7 @@
  * the same for all channels. Without Kd the diffuse colour is 0.8, without Ka the ambient one is the diffuse one. `illum`
  * switches nothing off. Where both d and Tr are given d holds: exporters disagree about Tr. Pictures: mtl_map.h.
  */
+#include "file_name.h"
 #include "mtl.h"
 #include "obj_parse.h"
 #include <math.h>
@@ -254,7 +255,7 @@ static int can_open(const char *path)
 /* The library's path beside the OBJ file, in `path`; 0 when memory fails. */
 static int library_path(gnoi_mtl *mtl, const char *obj_path, const char *name, size_t length, gnoi_mesh_array *path)
 {
-    size_t folder = name[0] == '/' ? 0 : (size_t)(gnoi_mesh_base_name(obj_path) - obj_path);
+    size_t folder = name[0] == '/' ? 0 : (size_t)(gnoi_base_name(obj_path) - obj_path);
     path->count = 0;
     if (!gnoi_mesh_array_room(mtl->context, path, folder + length + 1, 1)) return 0;
     char *text = path->data;

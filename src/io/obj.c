@@ -9,6 +9,7 @@
  * as they are, whatever their number of corners. Indices may be negative, and may point to vertices further down, so
  * positive ones are judged at the end of the file: the reader keeps the largest of each kind and its line.
  */
+#include "file_name.h"
 #include "mtl.h"
 #include "obj_parse.h"
 #include <limits.h>
@@ -352,7 +353,7 @@ static gno_status add_mesh(reader *r, gno_scene *scene, const gnoi_mesh_options 
     gno_status status = gnoi_mtl_to_scene(&r->mtl, scene, r->path, r->materials.data, r->materials.count);
     if (status != GNO_OK) return status;
     gno_mesh_def def = gnoi_mesh_def_for(options);
-    if (!def.name) def.name = r->object_count == 1 ? r->name.data : gnoi_mesh_base_name(r->path);
+    if (!def.name) def.name = r->object_count == 1 ? r->name.data : gnoi_base_name(r->path);
     def.vertex_count = r->points[kind_vertex].count;
     def.positions = r->points[kind_vertex].data;
     def.normal_count = r->points[kind_normal].count;

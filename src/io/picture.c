@@ -4,6 +4,8 @@
  */
 #include "io/picture.h"
 
+#include "io/file_name.h"
+
 #include <gnomon/gnomon_io.h>
 #include <math.h>
 #include <stdio.h>
@@ -21,9 +23,9 @@ typedef struct format {
 } format;
 
 static const format formats[] = {
-    {GNO_FORMAT_PNG, "PNG", "png", {8, 16}, "8 or 16", 0, gnoi_picture_png},
-    {GNO_FORMAT_EXR, "EXR", "exr", {16, 32}, "16 or 32", 1, gnoi_picture_exr},
-    {GNO_FORMAT_PFM, "PFM", "pfm", {32, 0}, "32", 0, gnoi_picture_pfm},
+    {GNO_FORMAT_PNG, "PNG", ".png", {8, 16}, "8 or 16", 0, gnoi_picture_png},
+    {GNO_FORMAT_EXR, "EXR", ".exr", {16, 32}, "16 or 32", 1, gnoi_picture_exr},
+    {GNO_FORMAT_PFM, "PFM", ".pfm", {32, 0}, "32", 0, gnoi_picture_pfm},
 };
 
 enum { FORMATS = sizeof formats / sizeof formats[0] };
@@ -34,23 +36,13 @@ gno_picture_def gno_picture_def_default(void)
     return def;
 }
 
-static int same_letters(const char *a, const char *b)
-{
-    for (; *a != '\0' && (*a | 32) == *b; a++, b++) {
-    }
-    return *a == '\0' && *b == '\0';
-}
-
 static const format *find_format(const char *path, gno_picture_format id)
 {
-    const char *dot = strrchr(path, '.');
-    const char *slash = strrchr(path, '/');
     if (id == GNO_FORMAT_AUTO && strcmp(path, "-") == 0) {
         id = GNO_FORMAT_PNG;
     }
     for (int i = 0; i < FORMATS; i++) {
-        if (id != GNO_FORMAT_AUTO ? formats[i].id == id
-                                  : dot != NULL && (slash == NULL || dot > slash) && same_letters(dot + 1, formats[i].extension)) {
+        if (id != GNO_FORMAT_AUTO ? formats[i].id == id : gnoi_has_extension(path, formats[i].extension)) {
             return &formats[i];
         }
     }

@@ -2,10 +2,10 @@
  *
  * Place: sets of gno_lit_pieces -> here -> pieces_obj.c or pieces_geojson.c -> text_file -> disk.
  */
+#include "io/file_name.h"
 #include "io/lit_files.h"
 
 #include <string.h>
-#include <strings.h>
 
 static const gnoi_pieces_format formats[] = {
     {".obj", gnoi_obj_begin, gnoi_obj_put, NULL},
@@ -15,9 +15,8 @@ static const gnoi_pieces_format formats[] = {
 
 static const gnoi_pieces_format *find_format(const char *path)
 {
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash != NULL ? slash : path, '.');
-    for (size_t i = 0; dot != NULL && i < sizeof formats / sizeof formats[0]; i++) {
-        if (strcasecmp(dot, formats[i].extension) == 0) {
+    for (size_t i = 0; i < sizeof formats / sizeof formats[0]; i++) {
+        if (gnoi_has_extension(path, formats[i].extension)) {
             return &formats[i];
         }
     }

@@ -3,21 +3,12 @@
 
 #include <stdio.h>
 
-/* Control characters and quotes escaped; bytes beyond ASCII as they are, as names in files are UTF-8. */
 static void put_string(gnoi_text *text, const char *string)
 {
-    char escape[8];
+    char escaped[GNOI_JSON_LONGEST];
     gnoi_text_char(text, '"');
-    for (const unsigned char *c = (const unsigned char *)(string != NULL ? string : ""); *c != '\0'; c++) {
-        if (*c == '"' || *c == '\\') {
-            gnoi_text_char(text, '\\');
-            gnoi_text_char(text, (char)*c);
-        } else if (*c < 0x20) {
-            snprintf(escape, sizeof escape, "\\u%04x", *c);
-            gnoi_text_put(text, escape);
-        } else {
-            gnoi_text_char(text, (char)*c);
-        }
+    for (const char *c = string != NULL ? string : ""; *c != '\0'; c++) {
+        gnoi_text_bytes(text, escaped, gnoi_json_byte(*c, escaped));
     }
     gnoi_text_char(text, '"');
 }

@@ -5,6 +5,7 @@
  *   path, settings --> tree of the file (of nothing, for a mesh file) with the settings --+--> scene_yaml.c (.yaml .yml)
  *                                                                                         +--> scene_mesh.c (.obj .ply ...)
  */
+#include "io/file_name.h"
 #include "io/scene_yaml.h"
 
 #include <gnomon/gnomon_io.h>
@@ -12,24 +13,6 @@
 #include <string.h>
 
 typedef enum file_kind { FILE_UNKNOWN, FILE_SCENE, FILE_MESH } file_kind;
-
-static int same_word(const char *a, const char *lower)
-{
-    for (; *a && *lower; a++, lower++) {
-        char c = *a >= 'A' && *a <= 'Z' ? (char)(*a - 'A' + 'a') : *a;
-        if (c != *lower) return 0;
-    }
-    return *a == *lower;
-}
-
-/* The path's extension, ".yaml"; "" where its file name has none. */
-const char *gnoi_extension(const char *path)
-{
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    return dot ? dot : "";
-}
-
-int gnoi_has_extension(const char *path, const char *lower) { return same_word(gnoi_extension(path), lower); }
 
 static file_kind kind_of(const char *path)
 {

@@ -11,6 +11,7 @@
  *  - ground: a light grey square under the lowest point, unless the file has both camera and lights.
  *  - shading: phong where the file has normals and for triangle meshes too large to be meant as facets, otherwise flat.
  */
+#include "io/file_name.h"
 #include "io/mesh_file.h"
 #include "io/scene_yaml.h"
 

@@ -114,8 +114,4 @@ gno_status gnoi_names_fail(const gnoi_yaml *yaml, const gnoi_yaml_node *node, co
 gno_status gnoi_scene_read_yaml(gno_scene *scene, gnoi_yaml *yaml, const char *path);
 gno_status gnoi_scene_read_mesh(gno_context *context, const gnoi_yaml *yaml, const char *path, gno_scene **scene);
 
-/* ".yaml" of a path, "" where it has none; and whether it is `lower` in any case. */
-const char *gnoi_extension(const char *path);
-int gnoi_has_extension(const char *path, const char *lower);
-
 #endif

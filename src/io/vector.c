@@ -3,6 +3,7 @@
  * Place: scene -> (checks here) -> drawing.h: shapes, background, lines -> writer by format -> atomic_file -> disk.
  */
 #include "io/drawing.h"
+#include "io/file_name.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -32,17 +33,10 @@ static gno_status refuse(gno_context *context, const char *path, const char *wha
 
 static gno_vector_format format_of(const char *path, gno_vector_format format)
 {
-    static const char *const extensions[] = {".svg", ".pdf"};
-    const size_t length = strlen(path);
-    for (int i = 0; i < 2 && format == GNO_VECTOR_AUTO && length >= 4; i++) {
-        const char *end = path + length - 4;
-        int same = end[0] == '.';
-        for (int k = 1; k < 4; k++) {
-            same &= (end[k] | 32) == extensions[i][k];
-        }
-        format = same ? i == 0 ? GNO_VECTOR_SVG : GNO_VECTOR_PDF : format;
+    if (format != GNO_VECTOR_AUTO) {
+        return format;
     }
-    return format;
+    return gnoi_has_extension(path, ".svg") ? GNO_VECTOR_SVG : gnoi_has_extension(path, ".pdf") ? GNO_VECTOR_PDF : GNO_VECTOR_AUTO;
 }
 
 /* What is wrong with a def, NULL: nothing. */

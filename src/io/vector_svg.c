@@ -9,63 +9,32 @@
  * Numbers are written from whole units, so that no locale and no rounding come in.
  */
 #include "io/drawing.h"
+#include "io/text_file.h"
 
 #include <stdio.h>
 #include <string.h>
 
-enum { TEXT_BUFFER = 1 << 16, LONGEST_PIECE = 64 };
-
-/* Text on its way to the file. */
-typedef struct text {
-    gnoi_file *file;
+/* A drawing on its way to the file. */
+typedef struct svg {
+    gnoi_text *text;
     const gnoi_drawing *drawing;
-    size_t used;
-    char buffer[TEXT_BUFFER];
-} text;
+} svg;
 
-static void flush(text *t)
+enum { LONGEST_DOT = 64 };
+
+static void put(svg *to, const char *string)
 {
-    gnoi_file_write(t->file, t->buffer, t->used);
-    t->used = 0;
+    gnoi_text_put(to->text, string);
 }
 
-static void put_bytes(text *t, const char *bytes, size_t length)
+static void put_size(svg *to, size_t number)
 {
-    while (length > 0) {
-        const size_t room = TEXT_BUFFER - t->used, n = length < room ? length : room;
-        memcpy(t->buffer + t->used, bytes, n);
-        t->used += n;
-        bytes += n;
-        length -= n;
-        if (t->used == TEXT_BUFFER) {
-            flush(t);
-        }
-    }
+    gnoi_text_size(to->text, number);
 }
 
-static void put(text *t, const char *string)
+static void put_real(svg *to, double value)
 {
-    put_bytes(t, string, strlen(string));
-}
-
-static void put_size(text *t, size_t number)
-{
-    char digits[LONGEST_PIECE];
-    snprintf(digits, sizeof digits, "%zu", number);
-    put(t, digits);
-}
-
-/* A double with a point whatever the locale. */
-static void put_real(text *t, double value)
-{
-    char digits[LONGEST_PIECE];
-    snprintf(digits, sizeof digits, "%.12g", value);
-    for (char *c = digits; *c != '\0'; c++) {
-        if (strchr("0123456789+-e", *c) == NULL) {
-            *c = '.';
-        }
-    }
-    put(t, digits);
+    gnoi_text_short(to->text, value);
 }
 
 /* Units as pixels: all digits after the point that are not zeros at the end. Appends to `to`, returns the new end. */
@@ -93,21 +62,21 @@ static char *format_units(char *to, int64_t value, int64_t unit)
     return to;
 }
 
-static void put_dot(text *t, char before, gnoi_dot dot)
+static void put_dot(svg *to, char before, gnoi_dot dot)
 {
-    char piece[LONGEST_PIECE], *end = piece;
+    char piece[LONGEST_DOT], *end = piece;
     *end++ = before;
-    end = format_units(end, dot.x, t->drawing->unit);
+    end = format_units(end, dot.x, to->drawing->unit);
     *end++ = ' ';
-    end = format_units(end, dot.y, t->drawing->unit);
-    put_bytes(t, piece, (size_t)(end - piece));
+    end = format_units(end, dot.y, to->drawing->unit);
+    gnoi_text_bytes(to->text, piece, (size_t)(end - piece));
 }
 
-static void put_colour(text *t, const unsigned char rgb[3])
+static void put_colour(svg *to, const unsigned char rgb[3])
 {
-    char digits[LONGEST_PIECE];
+    char digits[8];
     snprintf(digits, sizeof digits, "#%02x%02x%02x", rgb[0], rgb[1], rgb[2]);
-    put(t, digits);
+    put(to, digits);
 }
 
 /* Bytes of a well-formed UTF-8 character that XML may hold, 0 for anything else. */
@@ -129,23 +98,23 @@ static size_t character_length(const unsigned char *c)
 }
 
 /* Text for people inside XML: what XML may not hold becomes the replacement character; blanks become `blank`, where it is given. */
-static void put_escaped(text *t, const char *string, char blank)
+static void put_escaped(svg *to, const char *string, char blank)
 {
     const unsigned char *c = (const unsigned char *)string;
     while (*c != '\0') {
         const size_t length = character_length(c);
         if (*c == '\t' || *c == '\n' || *c == '\r' || *c == ' ') {
-            put(t, blank != '\0' ? "_" : " ");
+            put(to, blank != '\0' ? "_" : " ");
             c++;
         } else if (length == 0) {
-            put(t, "\xef\xbf\xbd");
+            put(to, "\xef\xbf\xbd");
             c++;
         } else {
             const char *escape = *c == '&' ? "&amp;" : *c == '<' ? "&lt;" : *c == '>' ? "&gt;" : *c == '"' ? "&quot;" : NULL;
             if (escape != NULL) {
-                put(t, escape);
+                put(to, escape);
             } else {
-                put_bytes(t, (const char *)c, length);
+                gnoi_text_bytes(to->text, (const char *)c, length);
             }
             c += length;
         }
@@ -154,30 +123,30 @@ static void put_escaped(text *t, const char *string, char blank)
 
 /* ---- shapes -------------------------------------------------------------------------------------------------------------- */
 
-static void put_rings(text *t, const gnoi_rings *rings, size_t first, size_t count)
+static void put_rings(svg *to, const gnoi_rings *rings, size_t first, size_t count)
 {
     for (size_t r = first; r < first + count; r++) {
         const gnoi_dot *dots = gnoi_dots(&rings->dots);
         const size_t begin = gnoi_ring_begin(rings, r), end = gnoi_ring_end(rings, r);
         for (size_t i = begin; i < end; i++) {
-            put_dot(t, i == begin ? 'M' : i == begin + 1 ? 'L' : ' ', dots[i]);
+            put_dot(to, i == begin ? 'M' : i == begin + 1 ? 'L' : ' ', dots[i]);
         }
-        put(t, "Z");
+        put(to, "Z");
     }
 }
 
-static void put_id(text *t, const gnoi_shape *shape)
+static void put_id(svg *to, const gnoi_shape *shape)
 {
-    put(t, "p");
-    put_size(t, shape->polygon);
-    put(t, "-");
-    put_size(t, shape->state);
+    put(to, "p");
+    put_size(to, shape->polygon);
+    put(to, "-");
+    put_size(to, shape->state);
 }
 
 /* The lights that reach a shape, by name; an area light of which only some points do as NAME:HOW_MANY/OF. */
-static void put_lights(text *t, const gnoi_shape *shape)
+static void put_lights(svg *to, const gnoi_shape *shape)
 {
-    const gnoi_drawing *d = t->drawing;
+    const gnoi_drawing *d = to->drawing;
     gno_piece piece;
     gno_pieces_get(d->pieces, shape->piece, &piece);
     for (size_t i = 0, n; i < piece.light_count; i += n) {
@@ -187,179 +156,177 @@ static void put_lights(text *t, const gnoi_shape *shape)
         for (n = 1; i + n < piece.light_count && d->light_of[piece.lights[i + n]] == light; n++) {
         }
         gno_scene_light(d->scene, light, &from, &name);
-        put(t, i > 0 ? " " : "");
+        put(to, i > 0 ? " " : "");
         if (name[0] != '\0') {
-            put_escaped(t, name, '_');
+            put_escaped(to, name, '_');
         } else {
-            put(t, "#");
-            put_size(t, (size_t)light);
+            put(to, "#");
+            put_size(to, (size_t)light);
         }
         if (from.type == GNO_LIGHT_AREA && n < (size_t)from.samples * (size_t)from.samples) {
-            put(t, ":");
-            put_size(t, n);
-            put(t, "/");
-            put_size(t, (size_t)from.samples * (size_t)from.samples);
+            put(to, ":");
+            put_size(to, n);
+            put(to, "/");
+            put_size(to, (size_t)from.samples * (size_t)from.samples);
         }
     }
 }
 
-static void put_name(text *t, const char *attribute, const char *name)
+static void put_name(svg *to, const char *attribute, const char *name)
 {
     if (name[0] == '\0') {
         return;
     }
-    put(t, attribute);
-    put_escaped(t, name, '\0');
-    put(t, "\"");
+    put(to, attribute);
+    put_escaped(to, name, '\0');
+    put(to, "\"");
 }
 
-static void put_shape(text *t, const gnoi_shape *shape)
+static void put_shape(svg *to, const gnoi_shape *shape)
 {
-    const gnoi_drawing *d = t->drawing;
+    const gnoi_drawing *d = to->drawing;
     gno_polygon polygon;
     gno_scene_polygon(d->scene, shape->polygon, &polygon);
-    put(t, "<path id=\"");
-    put_id(t, shape);
-    put(t, "\" fill=\"");
-    put_colour(t, shape->rgb);
-    put(t, "\" data-polygon=\"");
-    put_size(t, shape->polygon);
-    put(t, "\"");
-    put_name(t, " data-object=\"", gno_scene_object_name(d->scene, polygon.object));
-    put_name(t, " data-material=\"", gno_scene_material_name(d->scene, polygon.material));
-    put(t, " data-lights=\"");
-    put_lights(t, shape);
-    put(t, "\" data-area=\"");
-    put_real(t, shape->area);
-    put(t, "\" d=\"");
-    put_rings(t, &d->rings, shape->first_ring, shape->ring_count);
-    put(t, "\"/>\n");
+    put(to, "<path id=\"");
+    put_id(to, shape);
+    put(to, "\" fill=\"");
+    put_colour(to, shape->rgb);
+    put(to, "\" data-polygon=\"");
+    put_size(to, shape->polygon);
+    put(to, "\"");
+    put_name(to, " data-object=\"", gno_scene_object_name(d->scene, polygon.object));
+    put_name(to, " data-material=\"", gno_scene_material_name(d->scene, polygon.material));
+    put(to, " data-lights=\"");
+    put_lights(to, shape);
+    put(to, "\" data-area=\"");
+    put_real(to, shape->area);
+    put(to, "\" d=\"");
+    put_rings(to, &d->rings, shape->first_ring, shape->ring_count);
+    put(to, "\"/>\n");
 }
 
 /* ---- layers --------------------------------------------------------------------------------------------------------------- */
 
-static void put_head(text *t)
+static void put_head(svg *to)
 {
-    const gnoi_drawing *d = t->drawing;
+    const gnoi_drawing *d = to->drawing;
     const char *title = d->def->title;
-    put(t, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
+    put(to, "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
            "xmlns:xlink=\"http://www.w3.org/1999/xlink\" version=\"1.1\" width=\"");
-    put_size(t, (size_t)d->width);
-    put(t, "\" height=\"");
-    put_size(t, (size_t)d->height);
-    put(t, "\" viewBox=\"0 0 ");
-    put_size(t, (size_t)d->width);
-    put(t, " ");
-    put_size(t, (size_t)d->height);
-    put(t, "\">\n");
+    put_size(to, (size_t)d->width);
+    put(to, "\" height=\"");
+    put_size(to, (size_t)d->height);
+    put(to, "\" viewBox=\"0 0 ");
+    put_size(to, (size_t)d->width);
+    put(to, " ");
+    put_size(to, (size_t)d->height);
+    put(to, "\">\n");
     if (title != NULL && title[0] != '\0') {
-        put(t, "<title>");
-        put_escaped(t, title, '\0');
-        put(t, "</title>\n");
+        put(to, "<title>");
+        put_escaped(to, title, '\0');
+        put(to, "</title>\n");
     }
-    put(t, "<metadata>gnomon ");
-    put(t, gno_version());
-    put(t, "</metadata>\n");
+    put(to, "<metadata>gnomon ");
+    put(to, gno_version());
+    put(to, "</metadata>\n");
 }
 
-static void put_underlay(text *t)
+static void put_underlay(svg *to)
 {
-    const gnoi_drawing *d = t->drawing;
-    put(t, "<g id=\"underlay\" stroke-linejoin=\"round\" stroke-width=\"");
-    put_real(t, GNOI_UNDERLAY_RIM);
+    const gnoi_drawing *d = to->drawing;
+    put(to, "<g id=\"underlay\" stroke-linejoin=\"round\" stroke-width=\"");
+    put_real(to, GNOI_UNDERLAY_RIM);
     if (!d->def->background) {
-        put(t, "\" clip-path=\"url(#covered)");
+        put(to, "\" clip-path=\"url(#covered)");
     }
-    put(t, "\">\n");
+    put(to, "\">\n");
     for (size_t i = 0; i < d->shapes.count; i++) {
         const gnoi_shape *shape = gnoi_drawing_shape(d, i);
-        put(t, "<use xlink:href=\"#");
-        put_id(t, shape);
-        put(t, "\" stroke=\"");
-        put_colour(t, shape->rgb);
-        put(t, "\"/>\n");
+        put(to, "<use xlink:href=\"#");
+        put_id(to, shape);
+        put(to, "\" stroke=\"");
+        put_colour(to, shape->rgb);
+        put(to, "\"/>\n");
     }
-    put(t, "</g>\n");
+    put(to, "</g>\n");
 }
 
 /* Without a background the underlay is kept to where shapes are: the picture less what they leave free. */
-static void put_clip(text *t)
+static void put_clip(svg *to)
 {
-    const gnoi_drawing *d = t->drawing;
+    const gnoi_drawing *d = to->drawing;
     const gnoi_dot corner[4] = {{0, 0}, {d->width * d->unit, 0}, {d->width * d->unit, d->height * d->unit}, {0, d->height * d->unit}};
-    put(t, "<clipPath id=\"covered\"><path clip-rule=\"evenodd\" d=\"");
+    put(to, "<clipPath id=\"covered\"><path clip-rule=\"evenodd\" d=\"");
     for (int i = 0; i < 4; i++) {
-        put_dot(t, i == 0 ? 'M' : i == 1 ? 'L' : ' ', corner[i]);
+        put_dot(to, i == 0 ? 'M' : i == 1 ? 'L' : ' ', corner[i]);
     }
-    put(t, "Z");
-    put_rings(t, &d->around, 0, d->around.ring_end.count);
-    put(t, "\"/></clipPath>\n");
+    put(to, "Z");
+    put_rings(to, &d->around, 0, d->around.ring_end.count);
+    put(to, "\"/></clipPath>\n");
 }
 
-static void put_background(text *t)
+static void put_background(svg *to)
 {
-    const gnoi_drawing *d = t->drawing;
-    put(t, "<path id=\"background\" fill-rule=\"evenodd\" fill=\"");
-    put_colour(t, d->background);
-    put(t, "\" d=\"");
-    put_rings(t, &d->around, 0, d->around.ring_end.count);
-    put(t, "\"/>\n");
+    const gnoi_drawing *d = to->drawing;
+    put(to, "<path id=\"background\" fill-rule=\"evenodd\" fill=\"");
+    put_colour(to, d->background);
+    put(to, "\" d=\"");
+    put_rings(to, &d->around, 0, d->around.ring_end.count);
+    put(to, "\"/>\n");
 }
 
-static void put_strokes(text *t)
+static void put_strokes(svg *to)
 {
     static const char *const kinds[] = {"none", "silhouette", "edge", "outline"};
-    const gnoi_drawing *d = t->drawing;
-    put(t, "<g id=\"edges\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" stroke=\"");
-    put_colour(t, d->edge_colour);
-    put(t, "\" stroke-width=\"");
-    put_real(t, d->def->edge_width);
-    put(t, "\">\n");
+    const gnoi_drawing *d = to->drawing;
+    put(to, "<g id=\"edges\" fill=\"none\" stroke-linecap=\"round\" stroke-linejoin=\"round\" stroke=\"");
+    put_colour(to, d->edge_colour);
+    put(to, "\" stroke-width=\"");
+    put_real(to, d->def->edge_width);
+    put(to, "\">\n");
     for (size_t i = 0; i < d->strokes.count; i++) {
         const gnoi_stroke *s = gnoi_drawing_stroke(d, i);
         const gnoi_dot *dots = gnoi_dots(&d->stroke_dots) + s->first_dot;
-        put(t, "<path class=\"");
-        put(t, kinds[s->kind]);
-        put(t, "\" data-polygon=\"");
-        put_size(t, s->polygon);
-        put(t, "\" d=\"");
+        put(to, "<path class=\"");
+        put(to, kinds[s->kind]);
+        put(to, "\" data-polygon=\"");
+        put_size(to, s->polygon);
+        put(to, "\" d=\"");
         for (size_t k = 0; k < s->dot_count; k++) {
-            put_dot(t, k == 0 ? 'M' : k == 1 ? 'L' : ' ', dots[k]);
+            put_dot(to, k == 0 ? 'M' : k == 1 ? 'L' : ' ', dots[k]);
         }
-        put(t, s->closed ? "Z\"/>\n" : "\"/>\n");
+        put(to, s->closed ? "Z\"/>\n" : "\"/>\n");
     }
-    put(t, "</g>\n");
+    put(to, "</g>\n");
 }
 
 gno_status gnoi_vector_svg(const gnoi_drawing *d, gnoi_file *file)
 {
-    text *t = gno_context_realloc(d->context, NULL, 0, sizeof *t);
-    if (t == NULL) {
+    svg whole, *to = &whole;
+    whole.text = gnoi_text_begin(file);
+    whole.drawing = d;
+    if (whole.text == NULL) {
         return gnoi_drawing_no_memory(d);
     }
-    t->file = file;
-    t->drawing = d;
-    t->used = 0;
-    put_head(t);
+    put_head(to);
     if (d->def->underlay && !d->def->background) {
-        put_clip(t);
+        put_clip(to);
     }
     if (d->def->underlay) {
-        put_underlay(t);
+        put_underlay(to);
     }
-    put(t, "<g id=\"pieces\" fill-rule=\"evenodd\">\n");
+    put(to, "<g id=\"pieces\" fill-rule=\"evenodd\">\n");
     for (size_t i = 0; i < d->shapes.count && file->error == 0; i++) {
-        put_shape(t, gnoi_drawing_shape(d, i));
+        put_shape(to, gnoi_drawing_shape(d, i));
     }
-    put(t, "</g>\n");
+    put(to, "</g>\n");
     if (d->def->background) {
-        put_background(t);
+        put_background(to);
     }
     if (d->def->edges != GNO_EDGES_NONE) {
-        put_strokes(t);
+        put_strokes(to);
     }
-    put(t, "</svg>\n");
-    flush(t);
-    gno_context_realloc(d->context, t, sizeof *t, 0);
+    put(to, "</svg>\n");
+    gnoi_text_end(to->text);
     return GNO_OK;
 }
