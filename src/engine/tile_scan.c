@@ -76,7 +76,69 @@ void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, doub
             tile->thin[row * GNOI_TILE_W + x] = 1;
 }
 
-/* Bounds of a polygon in the picture; everything for one that must be cut first. */
+/* Bounds of a plane's nearness over the tile. */
+static void plane_bounds(const gnoi_tile *tile, const gnoi_screen_plane *plane, float *low, float *high)
+{
+    double x0 = tile->x0, x1 = x0 + tile->width, y0 = tile->y0 - 0.5, y1 = y0 + tile->height + 1;
+    double zx0 = plane->fx * x0, zx1 = plane->fx * x1, zy0 = plane->fy * y0, zy1 = plane->fy * y1;
+    *low = (float)((zx0 < zx1 ? zx0 : zx1) + (zy0 < zy1 ? zy0 : zy1) + plane->f0);
+    *high = (float)((zx0 > zx1 ? zx0 : zx1) + (zy0 > zy1 ? zy0 : zy1) + plane->f0);
+}
+
+static void set_tolerance(const gnoi_frame_job *job, double tolerance, double side, gnoi_depth *depth)
+{
+    depth->tolerance_z = job->view.orthographic ? 0 : tolerance / fabs(side);
+    depth->tolerance_0 = job->view.orthographic ? tolerance / fabs(side) : 0;
+}
+
+/* `nearest`, widened by the tolerance, is before all of the surface. */
+static void set_before(gnoi_depth *depth, float nearest)
+{
+    depth->nearest = nearest + FLOAT_SLACK * fabsf(nearest);
+    depth->surely_before = depth->nearest + (float)(depth->tolerance_z * fabs((double)depth->nearest) + depth->tolerance_0);
+    depth->surely_before += FLOAT_SLACK * fabsf(depth->surely_before);
+}
+
+static void set_behind(gnoi_depth *depth, float farthest)
+{
+    depth->farthest = farthest - FLOAT_SLACK * fabsf(farthest);
+    depth->surely_behind = depth->farthest - (float)(depth->tolerance_z * fabs((double)depth->farthest) + depth->tolerance_0);
+    depth->surely_behind -= FLOAT_SLACK * fabsf(depth->surely_behind);
+}
+
+/* Bounds of the surface's nearness in the tile: those of its corners, and those of its plane over the tile. */
+static void set_depth_bounds(const gnoi_tile *tile, const gnoi_screen_plane *plane, gnoi_depth *depth)
+{
+    float low, high;
+    plane_bounds(tile, plane, &low, &high);
+    set_before(depth, tile->outline.z1 < high ? tile->outline.z1 : high);
+    set_behind(depth, tile->outline.z0 > low ? tile->outline.z0 : low);
+}
+
+static double tolerance_of(const gnoi_frame_job *job, const gnoi_poly *poly)
+{
+    return gnoi_plane_tolerance(&job->scene->prepared, (const double(*)[3])job->scene->prepared.positions, poly);
+}
+
+/* What is before all that is seen in the tile of a polygon far larger: a ground near the viewer must not come first in the tiles
+ * of what stands on it far away. */
+static float nearest_in_tile(const gnoi_tile *tile, const gnoi_poly *poly)
+{
+    const gnoi_frame_job *job = tile->job;
+    double side = gnoi_view_side(&job->view, poly->n, poly->d);
+    gnoi_screen_plane plane;
+    gnoi_depth depth;
+    float low, high;
+    if (side == 0)
+        return HUGE_VALF;
+    plane = gnoi_view_nearness(&job->view, poly->n, poly->d, side);
+    plane_bounds(tile, &plane, &low, &high);
+    set_tolerance(job, tolerance_of(job, poly), side, &depth);
+    set_before(&depth, high);
+    return depth.surely_before == depth.surely_before ? depth.surely_before : HUGE_VALF;
+}
+
+/* Bounds of a polygon in the picture; the whole tile for one that must be cut first. */
 static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
 {
     const uint32_t *vertex = tile->job->scene->prepared.corner_vertex + poly->corner;
@@ -97,8 +159,13 @@ static gnoi_item item_of(const gnoi_tile *tile, const gnoi_poly *poly)
     item.plain = x0 >= -reach && x1 <= reach && y0 >= -reach && y1 <= reach;
     if (!item.plain) {
         item.x0 = item.y0 = -HUGE_VALF;
-        item.x1 = item.y1 = item.z1 = HUGE_VALF;
+        item.x1 = item.y1 = HUGE_VALF;
+        item.z1 = nearest_in_tile(tile, poly);
         return item;
+    }
+    if (x1 - x0 > GNOI_TILE_W || y1 - y0 > GNOI_TILE_H) {
+        float z = nearest_in_tile(tile, poly);
+        item.z1 = z < item.z1 ? z : item.z1;
     }
     item.plain = poly->corner_count == 3;
     item.thin = (unsigned char)(tile->job->def.lines > tile->job->def.base_lines && is_thin(tile, poly, x1 - x0, y1 - y0));
@@ -133,23 +200,6 @@ void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count)
     gnoi_sort(tile->order, tile->order_scratch, count);
 }
 
-/* Bounds of the surface's nearness in the tile: those of its corners, and those of its plane over the tile. */
-static void set_depth_bounds(const gnoi_tile *tile, const gnoi_screen_plane *plane, gnoi_depth *depth)
-{
-    double x0 = tile->x0, x1 = x0 + tile->width, y0 = tile->y0 - 0.5, y1 = y0 + tile->height + 1;
-    double zx0 = plane->fx * x0, zx1 = plane->fx * x1, zy0 = plane->fy * y0, zy1 = plane->fy * y1;
-    float low = (float)((zx0 < zx1 ? zx0 : zx1) + (zy0 < zy1 ? zy0 : zy1) + plane->f0);
-    float high = (float)((zx0 > zx1 ? zx0 : zx1) + (zy0 > zy1 ? zy0 : zy1) + plane->f0);
-    depth->nearest = tile->outline.z1 < high ? tile->outline.z1 : high;
-    depth->farthest = tile->outline.z0 > low ? tile->outline.z0 : low;
-    depth->nearest += FLOAT_SLACK * fabsf(depth->nearest);
-    depth->farthest -= FLOAT_SLACK * fabsf(depth->farthest);
-    depth->surely_before = depth->nearest + (float)(depth->tolerance_z * fabs((double)depth->nearest) + depth->tolerance_0);
-    depth->surely_behind = depth->farthest - (float)(depth->tolerance_z * fabs((double)depth->farthest) + depth->tolerance_0);
-    depth->surely_before += FLOAT_SLACK * fabsf(depth->surely_before);
-    depth->surely_behind -= FLOAT_SLACK * fabsf(depth->surely_behind);
-}
-
 static double clamp(double v, double lo, double hi) { return v < lo ? lo : v > hi ? hi : v; }
 
 /* A slot for the polygon of the outline at hand; GNOI_NONE when it is seen from its undrawn side or edge on. */
@@ -182,7 +232,7 @@ static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
     r->index = index;
     r->side = side;
     r->nearness = gnoi_view_nearness(&job->view, poly->n, poly->d, side);
-    r->tolerance = gnoi_plane_tolerance(&job->scene->prepared, (const double(*)[3])job->scene->prepared.positions, poly);
+    r->tolerance = tolerance_of(job, poly);
     r->x0 = clamp(o->x0, tile->x0, x1);
     r->x1 = clamp(o->x1, tile->x0, x1);
     r->y0 = clamp(o->y0, tile->y0 - 0.5, y1);
@@ -193,8 +243,7 @@ static uint32_t new_slot(gnoi_tile *tile, uint32_t index)
     depth->fx = r->nearness.fx / GNOI_X_ONE;
     depth->fy = r->nearness.fy;
     depth->f0 = r->nearness.f0 + r->nearness.fx * tile->x0;
-    depth->tolerance_z = job->view.orthographic ? 0 : r->tolerance / fabs(side);
-    depth->tolerance_0 = job->view.orthographic ? r->tolerance / fabs(side) : 0;
+    set_tolerance(job, r->tolerance, side, depth);
     depth->index = poly->source;
     depth->priority = poly->priority;
     set_depth_bounds(tile, &r->nearness, depth);
