@@ -23,11 +23,12 @@ static uint32_t spread(uint32_t x)
     return (x | x << 2) & 0x09249249u;
 }
 
-static uint32_t place_of(const gnoi_prepared *prep, const double p[3])
+/* Cells are cubes of the longest extent: a flat scene cut as finely in height would come in layers. */
+static uint32_t place_of(const gnoi_prepared *prep, double extent, const double p[3])
 {
     uint32_t key = 0;
     for (int k = 0; k < 3; k++) {
-        double extent = prep->upper[k] - prep->lower[k], t = extent > 0 ? (p[k] - prep->lower[k]) / extent : 0;
+        double t = extent > 0 ? (p[k] - prep->lower[k]) / extent : 0;
         key |= spread((uint32_t)(t * ((1 << MORTON_BITS) - 1))) << k;
     }
     return key;
@@ -37,11 +38,14 @@ static uint32_t place_of(const gnoi_prepared *prep, const double p[3])
 static int sort_polys(const gno_scene *scene, gnoi_keyed *keys, gnoi_keyed *scratch)
 {
     const gnoi_prepared *prep = &scene->prepared;
+    double extent = 0;
+    for (int k = 0; k < 3; k++)
+        extent = prep->upper[k] - prep->lower[k] > extent ? prep->upper[k] - prep->lower[k] : extent;
     for (size_t i = 0; i < prep->poly_count; i++) {
         keys[i].key = 0;
         keys[i].value = (uint32_t)i;
         if (prep->poly_count >= FEW_POLYGONS)
-            keys[i].key = place_of(prep, scene->positions[prep->corner_vertex[prep->polys[i].corner]]);
+            keys[i].key = place_of(prep, extent, scene->positions[prep->corner_vertex[prep->polys[i].corner]]);
         if (gnoi_stopped_at(scene->context, i))
             return 0;
     }
