@@ -183,4 +183,10 @@ gno_status gnoi_triangulate(gno_context *context, const double (*positions)[3], 
                             const uint32_t *ring_corner, uint32_t ring_count, const double normal[3],
                             uint32_t (*triangles)[3]);
 
+/* Place of a prepared corner. */
+static inline vec3 gnoi_corner_at(const gno_scene *scene, uint32_t corner)
+{
+    return v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]);
+}
+
 #endif

@@ -39,11 +39,6 @@ void gnoi_centre_free(gnoi_centre *centre);
 /* The eye as a lamp. */
 gnoi_lamp gnoi_lamp_of_view(const gnoi_view *view);
 
-static inline vec3 gnoi_corner_at(const gno_scene *scene, uint32_t corner)
-{
-    return v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]);
-}
-
 /* Height of p over polygon `index`'s plane, positive on the centre's side. */
 static inline double gnoi_height_over(const gnoi_centre *centre, uint32_t index, vec3 p)
 {

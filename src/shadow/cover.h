@@ -1,12 +1,8 @@
 /* cover.h -- what hides a polygon from a centre: its column of casters, projected onto its plane.
  *
  * Place in the data flow: gnoi_centre + receiver -> outline and casters' shadows in the receiver's plane coordinates -> clipper
- * -> lit (visible) parts. Plane coordinates are right-handed as the centre sees the plane, orthonormal, with the origin at the
- * receiver's first corner, so that areas are true and digits are not lost far from the scene's origin.
- *
- * Every point is projected along the centre's ray through it: with a, b, h its coordinates along and its height over the
- * plane, H the height of the centre and A, B its coordinates, (a H - A h, b H - B h, H - h) are homogeneous plane coordinates
- * (column.h has the same formula with picture forms). A caster is nearer to the centre than the receiver where
+ * -> lit (visible) parts. With h the height of a point over the receiver's plane, H that of the centre (canvas.h), a caster is nearer
+ * to the centre than the receiver where
  *     S = h/H - h'/H' > 0,    h', H' the heights over the caster's own plane.
  * S is linear, constant along rays, and changes sign when caster and receiver change places. So of two polygons that
  * meet a ray exactly one hides the other, however badly planar they are: the parts that a centre sees cover each of its rays once.
@@ -16,18 +12,8 @@
 #ifndef GNOI_SHADOW_COVER_H
 #define GNOI_SHADOW_COVER_H
 
-#include "project/clip3.h"
-#include "shadow/centre.h"
+#include "shadow/canvas.h"
 #include "shadow/shape.h"
-
-/* A receiver's plane as a centre sees it. */
-typedef struct gnoi_canvas {
-    const gnoi_centre *centre;
-    uint32_t index;      /* of the receiver among the prepared polygons */
-    vec3 origin, u, v, n; /* n towards the centre */
-    double height;       /* H; a centre at infinity: the cosine */
-    double along_u, along_v; /* A, B over H */
-} gnoi_canvas;
 
 typedef enum gnoi_cover_state {
     GNOI_COVER_NONE,  /* nothing hides any of it */
@@ -58,19 +44,6 @@ typedef struct gnoi_cover {
 
 int gnoi_cover_make(const gno_scene *scene, gnoi_cover *cover); /* 0 when memory fails */
 void gnoi_cover_free(gnoi_cover *cover);
-
-/* Two unit vectors along a plane, right-handed with its unit normal. */
-void gnoi_plane_axes(vec3 n, vec3 *u, vec3 *v);
-
-gnoi_canvas gnoi_canvas_make(const gnoi_centre *centre, uint32_t index);
-
-static inline vec3 gnoi_canvas_point(const gnoi_canvas *canvas, double x, double y)
-{
-    return v3_mad(v3_mad(canvas->origin, canvas->u, x), canvas->v, y);
-}
-
-/* p projected along the centre's ray, homogeneous; side is S without the caster's share, h/H. */
-gnoi_hpoint gnoi_canvas_project(const gnoi_canvas *canvas, vec3 p);
 
 /* Appends the receiver's outline as its centre sees it, cut to the eye's frame where it has one. *whole: nothing was cut. Returns
  * 0 when memory fails. */

@@ -46,11 +46,6 @@ static meeting meet(const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_rec
 
 /* ---- the caster's pattern ------------------------------------------------------------------------------------------------- */
 
-static vec3 corner_at(const gno_scene *scene, uint32_t corner)
-{
-    return v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]);
-}
-
 /* How deep inside a triangle q lies, relative to its size, and the triangle's texture coordinates as affine functions of the
  * point, a.P + b. */
 static double lay(const gno_scene *scene, const gnoi_poly *poly, const uint32_t corner[3], vec3 q, vec3 a[2], double b[2])
@@ -58,7 +53,7 @@ static double lay(const gno_scene *scene, const gnoi_poly *poly, const uint32_t 
     vec3 p[3], n = v3_from(poly->n), grad[3];
     double area, least = HUGE_VAL;
     for (int i = 0; i < 3; i++)
-        p[i] = corner_at(scene, corner[i]);
+        p[i] = gnoi_corner_at(scene, corner[i]);
     area = v3_dot(n, v3_cross(v3_sub(p[1], p[0]), v3_sub(p[2], p[0])));
     if (!(fabs(area) > 0))
         return -HUGE_VAL;

@@ -1,12 +1,10 @@
 /* lamp.c -- see lamp.h. */
 #include "shadow/lamp.h"
 
-#define PI 3.14159265358979323846
+#include "scene/validate.h"
+#include <gnomon/gnomon_pieces.h>
 
-size_t gnoi_lamp_count(const gno_light *light)
-{
-    return light->type == GNO_LIGHT_AREA ? (size_t)light->samples * (size_t)light->samples : 1;
-}
+#define PI 3.14159265358979323846
 
 static gnoi_lamp lamp_from(const gno_light *light)
 {
@@ -27,33 +25,35 @@ static gnoi_lamp lamp_from(const gno_light *light)
 }
 
 /* An area light is a grid of points at the centres of its parallelogram's cells, each with its share of the intensity. */
-static void add_area(const gno_light *light, gnoi_lamp *lamps)
+static gno_light point_of(const gno_light *light, size_t k)
 {
-    int n = light->samples;
-    for (int i = 0; i < n; i++)
-        for (int j = 0; j < n; j++) {
-            gnoi_lamp lamp = lamp_from(light);
-            lamp.position = v3_mad(lamp.position, v3_from(light->edge1), (i + 0.5) / n);
-            lamp.position = v3_mad(lamp.position, v3_from(light->edge2), (j + 0.5) / n);
-            for (int k = 0; k < 3; k++)
-                lamp.intensity[k] /= (double)n * n;
-            *lamps++ = lamp;
-        }
+    gno_light point = *light;
+    const size_t n = (size_t)light->samples;
+    if (light->type != GNO_LIGHT_AREA)
+        return point;
+    point.type = GNO_LIGHT_POINT;
+    for (int c = 0; c < 3; c++) {
+        point.position[c] += light->edge1[c] * (((double)(k / n) + 0.5) / (double)n);
+        point.position[c] += light->edge2[c] * (((double)(k % n) + 0.5) / (double)n);
+        point.intensity[c] /= (double)n * (double)n;
+    }
+    return point;
 }
 
 void gnoi_lamps_of(const gno_light *light, gnoi_lamp *lamps)
 {
-    if (light->type == GNO_LIGHT_AREA)
-        add_area(light, lamps);
-    else
-        *lamps = lamp_from(light);
+    size_t count = gnoi_light_points(light);
+    for (size_t k = 0; k < count; k++) {
+        const gno_light point = point_of(light, k);
+        lamps[k] = lamp_from(&point);
+    }
 }
 
 size_t gnoi_lamps_count(const gno_scene *scene)
 {
     size_t count = 0;
     for (size_t i = 0; i < scene->light_count; i++)
-        count += gnoi_lamp_count(&scene->lights[i].light);
+        count += gnoi_light_points(&scene->lights[i].light);
     return count;
 }
 
@@ -62,7 +62,7 @@ void gnoi_lamps_fill(const gno_scene *scene, gnoi_lamp *lamps)
     for (size_t i = 0; i < scene->light_count; i++) {
         const gno_light *light = &scene->lights[i].light;
         gnoi_lamps_of(light, lamps);
-        lamps += gnoi_lamp_count(light);
+        lamps += gnoi_light_points(light);
     }
 }
 
@@ -89,6 +89,31 @@ int gnoi_lamp_is_first(const gno_scene *scene, size_t light)
 {
     size_t first = 0;
     for (size_t i = 0; i < scene->light_count && first < light; i++)
-        first += gnoi_lamp_count(&scene->lights[i].light);
+        first += gnoi_light_points(&scene->lights[i].light);
     return first == light;
+}
+
+/* ---- public ----------------------------------------------------------------------------------------------------------- */
+
+size_t gno_expanded_light_count(const gno_scene *scene)
+{
+    return scene ? gnoi_lamps_count(scene) : 0;
+}
+
+gno_status gno_expanded_light(const gno_scene *scene, size_t index, gno_light *light, int *source)
+{
+    size_t first = 0;
+    if (!scene || !light)
+        return GNO_ERROR_ARGUMENT;
+    for (size_t i = 0; i < scene->light_count; i++) {
+        const size_t count = gnoi_light_points(&scene->lights[i].light);
+        if (index < first + count) {
+            *light = point_of(&scene->lights[i].light, index - first);
+            if (source)
+                *source = (int)i;
+            return GNO_OK;
+        }
+        first += count;
+    }
+    return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "light %lu: the scene has %lu", (unsigned long)index, (unsigned long)first);
 }

@@ -14,8 +14,7 @@
 
 size_t gnoi_lamps_count(const gno_scene *scene);
 
-/* Of one light alone. lamps: room for gnoi_lamp_count. */
-size_t gnoi_lamp_count(const gno_light *light);
+/* Of one light alone. lamps: room for gnoi_light_points. */
 void gnoi_lamps_of(const gno_light *light, gnoi_lamp *lamps);
 
 /* lamps: room for gnoi_lamps_count. */

@@ -27,11 +27,6 @@ typedef struct outcome {
     unsigned char behind;   /* a one-sided polygon lit from behind: takes its share of the light, yet is not lit */
 } outcome;
 
-typedef struct chunk {
-    gnoi_piece_list pieces;
-    gnoi_list partners;
-} chunk;
-
 typedef struct job {
     gno_scene *scene;
     gnoi_centre centre;
@@ -40,7 +35,8 @@ typedef struct job {
     int worker_count;
     gnoi_parter *workers;
     size_t chunk_count;
-    chunk *chunks;
+    gnoi_piece_list *pieces; /* a list for each chunk */
+    gnoi_list *partners;     /* likewise */
     outcome *outcomes;
 } job;
 
@@ -115,29 +111,29 @@ static gno_status partly_lit(const job *j, gnoi_parter *p, const gnoi_receiver_v
     return status;
 }
 
-static gno_status keep_partners(const gnoi_parter *p, chunk *c, outcome *o)
+static gno_status keep_partners(const gnoi_parter *p, gnoi_list *to, outcome *o)
 {
     const gnoi_list *from = &p->cover.partners;
-    o->partner = (uint32_t)c->partners.count;
+    o->partner = (uint32_t)to->count;
     o->partner_count = (uint32_t)from->count;
     if (from->count == 0)
         return GNO_OK;
-    if (!gnoi_reserve(p->context, (void **)&c->partners.items, &c->partners.capacity, c->partners.count + from->count,
-                      sizeof *c->partners.items))
+    if (!gnoi_reserve(p->context, (void **)&to->items, &to->capacity, to->count + from->count, sizeof *to->items))
         return GNO_ERROR_MEMORY;
-    memcpy(c->partners.items + c->partners.count, from->items, from->count * sizeof *from->items);
-    c->partners.count += from->count;
+    memcpy(to->items + to->count, from->items, from->count * sizeof *from->items);
+    to->count += from->count;
     return GNO_OK;
 }
 
-static gno_status light_polygon(const job *j, gnoi_parter *p, uint32_t index, chunk *c, outcome *o)
+static gno_status light_polygon(const job *j, gnoi_parter *p, uint32_t index, outcome *o)
 {
+    gnoi_piece_list *pieces = &j->pieces[index / CHUNK];
     const gnoi_stand *s = &j->centre.stands[index];
     gnoi_receiver_view r;
     gnoi_cover_state state;
     gno_status status;
     o->state = GNOI_COVER_ALL;
-    o->piece = (uint32_t)c->pieces.count;
+    o->piece = (uint32_t)pieces->count;
     o->behind = (unsigned char)(s->side < 0 && !j->scene->prepared.polys[index].two_sided);
     if (s->side == 0 || s->hidden)
         return gnoi_true_area(p, &j->centre, index, &o->area);
@@ -151,11 +147,11 @@ static gno_status light_polygon(const job *j, gnoi_parter *p, uint32_t index, ch
         return GNO_ERROR_MEMORY;
     if (state == GNOI_COVER_PART) {
         o->casters = (uint32_t)(p->cover.casters.polygon_count + p->cover.veils.polygon_count);
-        status = partly_lit(j, p, &r, o, &c->pieces);
+        status = partly_lit(j, p, &r, o, pieces);
     } else if (state == GNOI_COVER_NONE)
-        status = all_lit(j, p, &r, o, &c->pieces);
-    o->piece_count = (uint32_t)(c->pieces.count - o->piece);
-    return status || !j->certify || o->piece_count == 0 ? status : keep_partners(p, c, o);
+        status = all_lit(j, p, &r, o, pieces);
+    o->piece_count = (uint32_t)(pieces->count - o->piece);
+    return status || !j->certify || o->piece_count == 0 ? status : keep_partners(p, &j->partners[index / CHUNK], o);
 }
 
 static gno_status light_chunk(void *user, int worker, size_t piece)
@@ -164,9 +160,9 @@ static gno_status light_chunk(void *user, int worker, size_t piece)
     size_t first = piece * CHUNK, end = first + CHUNK;
     gno_status status = GNO_OK;
     end = end < j->scene->prepared.poly_count ? end : j->scene->prepared.poly_count;
-    j->chunks[piece].pieces.context = j->scene->context;
+    j->pieces[piece].context = j->scene->context;
     for (size_t i = first; i < end && !status; i++)
-        status = light_polygon(j, &j->workers[worker], (uint32_t)i, &j->chunks[piece], &j->outcomes[i]);
+        status = light_polygon(j, &j->workers[worker], (uint32_t)i, &j->outcomes[i]);
     return status;
 }
 
@@ -175,7 +171,7 @@ static gno_status light_chunk(void *user, int worker, size_t piece)
 /* Appends the undiminished pieces of polygon `index`, seen from the centre on another polygon's plane. */
 static int add_pieces_on(const job *j, uint32_t index, const gnoi_canvas *canvas, gnoi_shape *out)
 {
-    const gnoi_piece_list *list = &j->chunks[index / CHUNK].pieces;
+    const gnoi_piece_list *list = &j->pieces[index / CHUNK];
     const outcome *o = &j->outcomes[index];
     for (uint32_t k = o->piece; k < o->piece + o->piece_count; k++) {
         const gnoi_piece *piece = &list->pieces[k];
@@ -204,7 +200,7 @@ static int add_pieces_on(const job *j, uint32_t index, const gnoi_canvas *canvas
 /* The flux of what of this polygon lies on lit parts of polygons before it in rank. */
 static gno_status count_twice(const job *j, gnoi_parter *p, uint32_t index, outcome *o)
 {
-    const chunk *c = &j->chunks[index / CHUNK];
+    const gnoi_list *partners = &j->partners[index / CHUNK];
     gnoi_canvas canvas = gnoi_canvas_make(&j->centre, index);
     gno_shape own, others;
     gno_status status;
@@ -213,7 +209,7 @@ static gno_status count_twice(const job *j, gnoi_parter *p, uint32_t index, outc
     if (!add_pieces_on(j, index, &canvas, &p->outline))
         return GNO_ERROR_MEMORY;
     for (uint32_t k = o->partner; k < o->partner + o->partner_count; k++)
-        if (!add_pieces_on(j, c->partners.items[k], &canvas, &p->work[0]))
+        if (!add_pieces_on(j, partners->items[k], &canvas, &p->work[0]))
             return GNO_ERROR_MEMORY;
     own = gnoi_shape_view(&p->outline);
     others = gnoi_shape_view(&p->work[0]);
@@ -311,7 +307,7 @@ static void fill_summary(const job *j, gno_lit_summary *sum)
 static void drop_backs(job *j)
 {
     for (size_t i = 0; i < j->chunk_count; i++) {
-        gnoi_piece_list *list = &j->chunks[i].pieces;
+        gnoi_piece_list *list = &j->pieces[i];
         size_t n = 0;
         for (size_t k = i * CHUNK; k < (i + 1) * CHUNK && k < j->scene->prepared.poly_count; k++) {
             const outcome *o = &j->outcomes[k];
@@ -320,21 +316,6 @@ static void drop_backs(job *j)
         }
         list->count = n;
     }
-}
-
-/* The lists' memory goes as it is copied together. */
-static gno_status join(job *j, gno_pieces **pieces)
-{
-    gno_status status;
-    gnoi_piece_list *lists = gnoi_malloc(j->scene->context, j->chunk_count, sizeof *lists);
-    if (!lists)
-        return GNO_ERROR_MEMORY;
-    drop_backs(j);
-    for (size_t i = 0; i < j->chunk_count; i++)
-        lists[i] = j->chunks[i].pieces;
-    status = gnoi_pieces_join(j->scene->context, lists, j->chunk_count, j->scene->polygon_count, pieces);
-    gnoi_free(j->scene->context, lists, j->chunk_count, sizeof *lists);
-    return status;
 }
 
 /* ---- the run ----------------------------------------------------------------------------------------------------------------- */
@@ -348,9 +329,10 @@ static gno_status job_make(job *j, int threads)
     if ((size_t)j->worker_count > j->chunk_count)
         j->worker_count = j->chunk_count > 0 ? (int)j->chunk_count : 1;
     j->workers = gnoi_calloc(context, (size_t)j->worker_count, sizeof *j->workers);
-    j->chunks = gnoi_calloc(context, j->chunk_count, sizeof *j->chunks);
+    j->pieces = gnoi_calloc(context, j->chunk_count, sizeof *j->pieces);
+    j->partners = gnoi_calloc(context, j->chunk_count, sizeof *j->partners);
     j->outcomes = gnoi_calloc(context, j->scene->prepared.poly_count, sizeof *j->outcomes);
-    if (!j->workers || !j->chunks || !j->outcomes)
+    if (!j->workers || !j->pieces || !j->partners || !j->outcomes)
         return GNO_ERROR_MEMORY;
     for (int i = 0; i < j->worker_count && !status; i++)
         status = gnoi_parter_make(j->scene, &j->workers[i]);
@@ -362,13 +344,14 @@ static void job_free(job *j)
     gno_context *context = j->scene->context;
     for (int i = 0; j->workers && i < j->worker_count; i++)
         gnoi_parter_free(&j->workers[i]);
-    for (size_t i = 0; j->chunks && i < j->chunk_count; i++) {
-        if (j->chunks[i].pieces.context)
-            gnoi_piece_list_free(&j->chunks[i].pieces);
-        gnoi_free(context, j->chunks[i].partners.items, j->chunks[i].partners.capacity, sizeof *j->chunks[i].partners.items);
-    }
+    for (size_t i = 0; j->pieces && i < j->chunk_count; i++)
+        if (j->pieces[i].context)
+            gnoi_piece_list_free(&j->pieces[i]);
+    for (size_t i = 0; j->partners && i < j->chunk_count; i++)
+        gnoi_free(context, j->partners[i].items, j->partners[i].capacity, sizeof *j->partners[i].items);
     gnoi_free(context, j->workers, (size_t)j->worker_count, sizeof *j->workers);
-    gnoi_free(context, j->chunks, j->chunk_count, sizeof *j->chunks);
+    gnoi_free(context, j->pieces, j->chunk_count, sizeof *j->pieces);
+    gnoi_free(context, j->partners, j->chunk_count, sizeof *j->partners);
     gnoi_free(context, j->outcomes, j->scene->prepared.poly_count, sizeof *j->outcomes);
     gnoi_centre_free(&j->centre);
 }
@@ -376,17 +359,13 @@ static void job_free(job *j)
 static gno_status find_lamp(const gno_scene *scene, size_t light, gnoi_lamp *lamp)
 {
     size_t count = gnoi_lamps_count(scene);
-    gnoi_lamp *lamps;
-    if (light >= count)
-        return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "light %lu: the scene has %lu", (unsigned long)light, (unsigned long)count);
+    gno_light point;
+    gno_status status = gno_expanded_light(scene, light, &point, NULL);
+    if (status)
+        return status;
     if (count > GNO_MAX_LIGHTS)
         return gnoi_fail(scene->context, GNO_ERROR_LIMIT, "%lu points of light in all; the limit is %d", (unsigned long)count, GNO_MAX_LIGHTS);
-    lamps = gnoi_malloc(scene->context, count, sizeof *lamps);
-    if (!lamps)
-        return GNO_ERROR_MEMORY;
-    gnoi_lamps_fill(scene, lamps);
-    *lamp = lamps[light];
-    gnoi_free(scene->context, lamps, count, sizeof *lamps);
+    gnoi_lamps_of(&point, lamp);
     return GNO_OK;
 }
 
@@ -425,8 +404,10 @@ static gno_status run(job *j, const gno_lit_def *def, gno_pieces **pieces, gno_l
         fill_rows(j, rows);
     if (!status)
         fill_summary(j, sum);
-    if (!status && pieces)
-        status = join(j, pieces);
+    if (!status && pieces) {
+        drop_backs(j);
+        status = gnoi_pieces_join(j->scene->context, j->pieces, j->chunk_count, j->scene->polygon_count, pieces);
+    }
     sum->piece_seconds += gnoi_now() - t0;
     return status;
 }
@@ -462,32 +443,3 @@ gno_status gno_lit_pieces(gno_scene *scene, size_t light, const gno_lit_def *def
 }
 
 /* ---- expanded lights ---------------------------------------------------------------------------------------------------------- */
-
-size_t gno_expanded_light_count(const gno_scene *scene) { return scene ? gnoi_lamps_count(scene) : 0; }
-
-gno_status gno_expanded_light(const gno_scene *scene, size_t index, gno_light *light, int *source)
-{
-    size_t first = 0;
-    if (!scene || !light)
-        return GNO_ERROR_ARGUMENT;
-    for (size_t i = 0; i < scene->light_count; i++) {
-        const gno_light *from = &scene->lights[i].light;
-        size_t n = from->type == GNO_LIGHT_AREA ? (size_t)from->samples : 1, k = index - first;
-        if (index < first + n * n) {
-            *light = *from;
-            if (from->type == GNO_LIGHT_AREA) {
-                light->type = GNO_LIGHT_POINT;
-                for (int c = 0; c < 3; c++) {
-                    light->position[c] += from->edge1[c] * (((double)(k / n) + 0.5) / (double)n) +
-                                          from->edge2[c] * (((double)(k % n) + 0.5) / (double)n);
-                    light->intensity[c] /= (double)n * (double)n;
-                }
-            }
-            if (source)
-                *source = (int)i;
-            return GNO_OK;
-        }
-        first += n * n;
-    }
-    return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "light %lu: the scene has %lu", (unsigned long)index, (unsigned long)first);
-}

@@ -1,5 +1,6 @@
 /* matrix.c -- the public calls of gnomon_matrix.h: building, columns, iterating, counts. See matrix.h. */
 #include "shadow/matrix.h"
+#include "scene/validate.h"
 #include "shadow/lamp.h"
 
 #include <string.h>
@@ -21,7 +22,7 @@ static gno_status check(gno_scene *scene, int light, const gno_matrix_def *def)
     size_t points;
     if (light < 0 || (size_t)light >= scene->light_count)
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "gno_matrix_build: light %d of %lu", light, (unsigned long)scene->light_count);
-    points = gnoi_lamp_count(&scene->lights[light].light);
+    points = gnoi_light_points(&scene->lights[light].light);
     if (def->point < -1 || (def->point >= 0 && (size_t)def->point >= points))
         return gnoi_fail(context, GNO_ERROR_ARGUMENT, "gno_matrix_build: point %d of a light of %lu", def->point, (unsigned long)points);
     if (def->threads < 0 || def->threads > GNO_MAX_THREADS)
@@ -74,7 +75,7 @@ static gno_status make_ready(gno_scene *scene, const gnoi_lamp *lamps, size_t co
 
 static gno_status build(gno_scene *scene, const gno_light *light, const gno_matrix_def *def, gno_matrix *m)
 {
-    size_t count = gnoi_lamp_count(light);
+    size_t count = gnoi_light_points(light);
     gnoi_lamp *lamps = gnoi_malloc(scene->context, count, sizeof *lamps);
     const gnoi_lamp *first = lamps;
     size_t used = count;

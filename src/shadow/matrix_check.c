@@ -4,6 +4,7 @@
  * receiver's plane and just below the light, thrown on the plane along the light's rays, and cut with the receiver there; what is left
  * has an area or none. Polygons that are not convex come as triangles. Only the shape of the caster's parts is shared with overlap.c.
  */
+#include "scene/validate.h"
 #include "shadow/lamp.h"
 #include "shadow/matrix.h"
 #include "scene/prepare.h"
@@ -190,7 +191,7 @@ static gno_status judge_all(const gno_scene *scene, const gnoi_search *lamps, si
 
 static gno_status check_light(gno_scene *scene, const gno_light *light, gno_matrix *matrix, gno_matrix_check_result *result)
 {
-    size_t count = gnoi_lamp_count(light);
+    size_t count = gnoi_light_points(light);
     gnoi_lamp *lamps = gnoi_malloc(scene->context, count, sizeof *lamps);
     gnoi_search *searches = gnoi_calloc(scene->context, count, sizeof *searches);
     gnoi_facets facets;

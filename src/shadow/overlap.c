@@ -28,11 +28,6 @@
 
 /* ---- convex parts ------------------------------------------------------------------------------------------------ */
 
-static vec3 corner_at(const gno_scene *scene, uint32_t corner)
-{
-    return v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]);
-}
-
 /* Whether the polygon is one ring that turns one way and around once (the first edge's direction is passed upwards once only). */
 static int is_convex(const gno_scene *scene, const gnoi_poly *poly)
 {
@@ -43,10 +38,10 @@ static int is_convex(const gno_scene *scene, const gnoi_poly *poly)
         return 1;
     if (poly->ring_count != 1 || count > GNOI_FACET_CORNERS)
         return 0;
-    first = v3_cross(n, v3_sub(corner_at(scene, poly->corner + 1), corner_at(scene, poly->corner)));
+    first = v3_cross(n, v3_sub(gnoi_corner_at(scene, poly->corner + 1), gnoi_corner_at(scene, poly->corner)));
     for (uint32_t i = 0; i < count; i++) {
-        vec3 a = corner_at(scene, poly->corner + i), b = corner_at(scene, poly->corner + (i + 1) % count);
-        vec3 c = corner_at(scene, poly->corner + (i + 2) % count), e = v3_sub(c, b);
+        vec3 a = gnoi_corner_at(scene, poly->corner + i), b = gnoi_corner_at(scene, poly->corner + (i + 1) % count);
+        vec3 c = gnoi_corner_at(scene, poly->corner + (i + 2) % count), e = v3_sub(c, b);
         int up = v3_dot(e, first) > 0;
         if (!(v3_dot(v3_cross(v3_sub(b, a), e), n) > 0))
             return 0;
@@ -65,12 +60,12 @@ static double area_of(vec3 a, vec3 b, vec3 c, vec3 n)
 static double polygon_area(const gno_scene *scene, const gnoi_poly *poly)
 {
     const uint32_t *ring = scene->prepared.ring_corner + poly->ring;
-    vec3 n = v3_from(poly->n), origin = corner_at(scene, poly->corner);
+    vec3 n = v3_from(poly->n), origin = gnoi_corner_at(scene, poly->corner);
     double area = 0;
     for (uint32_t r = 0; r < poly->ring_count; r++) {
         double part = 0;
         for (uint32_t i = ring[r]; i < ring[r + 1]; i++)
-            part += area_of(origin, corner_at(scene, i), corner_at(scene, i + 1 < ring[r + 1] ? i + 1 : ring[r]), n);
+            part += area_of(origin, gnoi_corner_at(scene, i), gnoi_corner_at(scene, i + 1 < ring[r + 1] ? i + 1 : ring[r]), n);
         area += r == 0 ? fabs(part) : -fabs(part);
     }
     return area;
@@ -80,7 +75,7 @@ static int fills(const gno_scene *scene, const gnoi_poly *poly, uint32_t (*trian
 {
     double sum = 0, whole = polygon_area(scene, poly);
     for (size_t t = 0; t < gnoi_triangles_of(poly); t++)
-        sum += fabs(area_of(corner_at(scene, triangles[t][0]), corner_at(scene, triangles[t][1]), corner_at(scene, triangles[t][2]),
+        sum += fabs(area_of(gnoi_corner_at(scene, triangles[t][0]), gnoi_corner_at(scene, triangles[t][1]), gnoi_corner_at(scene, triangles[t][2]),
                             v3_from(poly->n)));
     return fabs(sum - whole) <= SAME_AREA * (sum + fabs(whole));
 }
@@ -143,7 +138,7 @@ static void triangle_facet(const gno_scene *scene, const gnoi_facets *facets, si
 {
     facet->count = 3;
     for (int i = 0; i < 3; i++)
-        facet->corner[i] = corner_at(scene, facets->triangles[triangle][i]);
+        facet->corner[i] = gnoi_corner_at(scene, facets->triangles[triangle][i]);
 }
 
 /* The polygon as one convex part: itself, or a rectangle around it. Returns 1 when it is itself. */
@@ -153,7 +148,7 @@ static int whole_facet(const gno_scene *scene, const gnoi_poly *poly, uint32_t t
     if (triangles == IS_CONVEX) {
         facet->count = (int)poly->corner_count;
         for (uint32_t i = 0; i < poly->corner_count; i++)
-            facet->corner[i] = corner_at(scene, poly->corner + i);
+            facet->corner[i] = gnoi_corner_at(scene, poly->corner + i);
         return 1;
     }
     facet->count = gnoi_poly_points(scene, poly, facet->corner, &exact);

@@ -126,9 +126,12 @@ static int reserve_joined(gnoi_piece_list *to, const gnoi_piece_list *lists, siz
     size_t pieces = 0, rings = 0, points = 0, lights = 0;
     for (size_t i = 0; i < count; i++) {
         pieces += lists[i].count;
-        rings += lists[i].ring_count;
-        points += lists[i].point_count;
-        lights += lists[i].light_count;
+        for (size_t k = 0; k < lists[i].count; k++) { /* a list may hold what belongs to no piece any more */
+            const gnoi_piece *p = &lists[i].pieces[k];
+            rings += p->ring_count;
+            points += lists[i].ring_start[p->ring + p->ring_count] - lists[i].ring_start[p->ring];
+            lights += p->light_count;
+        }
     }
     to->capacity = pieces;
     to->pieces = gnoi_malloc(to->context, pieces, sizeof *to->pieces);

@@ -49,17 +49,6 @@ gno_status gnoi_true_area(gnoi_parter *p, const gnoi_centre *centre, uint32_t in
     return gnoi_parter_area(p, &view, area);
 }
 
-/* How far off the plane the corners lie. */
-static double bend_of(const gnoi_canvas *canvas)
-{
-    const gno_scene *scene = canvas->centre->scene;
-    const gnoi_poly *poly = &scene->prepared.polys[canvas->index];
-    double bend = 0;
-    for (uint32_t i = 0; i < poly->corner_count; i++)
-        bend = fmax(bend, fabs(v3_dot(canvas->n, v3_sub(gnoi_corner_at(scene, poly->corner + i), canvas->origin))));
-    return bend;
-}
-
 /* 1 when a slanting ray moves corners off the plane so far that the outline seen need not be as simple as the true one. */
 static int is_bent(const gnoi_receiver_view *r, double bend)
 {
@@ -90,7 +79,7 @@ gno_status gnoi_receiver_make(gnoi_parter *p, const gnoi_centre *centre, uint32_
     if (status || r->outline.polygon_count == 0)
         return status;
     r->seen = gnoi_shape_moment(&r->outline, 0);
-    bend = bend_of(&r->canvas);
+    bend = gnoi_canvas_bend(&r->canvas);
     if (!r->convex || is_bent(r, bend)) {
         double area = r->true_area, simple = r->seen.area;
         if (!r->whole || bend > centre->noise)
