@@ -15,7 +15,7 @@ enum { DEFAULT_RANKS = 6 };
 
 layers_wish layers_none(void)
 {
-    const layers_wish none = {0, DEFAULT_RANKS};
+    const layers_wish none = {0, 0};
     return none;
 }
 
@@ -43,6 +43,12 @@ int layers_parse(layers_wish *wish, const char *list, const char *command_name)
     }
 }
 
+int layers_check(const layers_wish *wish, const char *command_name)
+{
+    const unsigned ranked = 1u << POLYGON | 1u << OBJECT | 1u << MATERIAL;
+    return wish->ranks == 0 || (wish->wanted & ranked) != 0 ? -1 : usage(command_name, "--ranks: goes with --aov polygon, object or material");
+}
+
 static void *take(layer_buffers *b, const layers_wish *wish, int layer, size_t values, size_t each)
 {
     const size_t size = values <= SIZE_MAX / 4 / each ? values * each * 4 : 0;
@@ -63,9 +69,10 @@ static void *take(layer_buffers *b, const layers_wish *wish, int layer, size_t v
 
 static void take_ranks(layer_buffers *b, const layers_wish *wish, int layer, size_t pixels, gno_ranks *ranks)
 {
-    ranks->count = wish->ranks;
-    ranks->id = take(b, wish, layer, pixels, (size_t)wish->ranks);
-    ranks->coverage = take(b, wish, layer, pixels, (size_t)wish->ranks);
+    const int count = wish->ranks > 0 ? wish->ranks : DEFAULT_RANKS;
+    ranks->count = count;
+    ranks->id = take(b, wish, layer, pixels, (size_t)count);
+    ranks->coverage = take(b, wish, layer, pixels, (size_t)count);
 }
 
 int layers_allocate(const layers_wish *wish, const gno_scene *scene, layer_buffers *buffers)

@@ -199,6 +199,10 @@ static int read_arguments(job *work, int argc, char **argv)
     if (work->layers.wanted != 0 && !outputs_has_layers(&work->files)) {
         return usage("render", "--aov: layers need an output in .exr");
     }
+    const int ranks = layers_check(&work->layers, "render");
+    if (ranks >= 0) {
+        return ranks;
+    }
     const int status = outputs_check(&work->files, work->depth, "render");
     return status != EXIT_DONE ? status : -1;
 }

@@ -47,5 +47,6 @@ verdict 'as many ranks as asked for' few_ranks
 verdict 'a wrong name' refuses '"dpeth" is not one of depth' -o a.exr --aov normal,dpeth
 verdict 'an empty name' refuses '"" is not one of' -o a.exr --aov normal,
 verdict 'no EXR to hold them' refuses 'need an output in .exr' -o a.png --aov depth
+verdict 'ranks without a layer that has them' refuses 'goes with --aov' -o a.exr --aov depth --ranks 3
 verdict 'a wrong number of ranks' refuses '--ranks 0' -o a.exr --ranks 0
 exit $failures
