@@ -8,6 +8,7 @@
 #   make fuzz       FUZZ_SECONDS for each target of random input
 #   make install    PREFIX, DESTDIR     make check-tsan     threaded tests under the thread sanitizer
 #   make check-port     the engine with 32 bits and on a big-endian machine, by cross compilers and qemu
+#   make coverage   lines and branches of src/ that the tests reach
 #   make check-headers  the public headers in every C and C++ they promise
 
 # ---- yours to change, here or on the command line ----------------------------------------------------------------
@@ -33,13 +34,15 @@ V       ?=# anything: whole commands instead of short lines
 # The same input has to give the same bytes with every compiler: no contraction to fused multiply-adds, no -ffast-math,
 # no -march.
 SANITIZE :=
+# What make coverage adds to the files of src/ alone, so that the tests around them stay quick.
+COUNTERS :=
 LANGUAGE := -std=c11 -ffp-contract=off -pthread -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -Iinclude -Isrc
 WARNINGS := -Wall -Wextra -Wpedantic -Wshadow -Wconversion
 TEST_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow
 # Neither flag changes a result: they let square roots and selections become vector code.
 VECTOR := -fno-math-errno -fno-trapping-math
 COMPILE = $(CC) $(CPPFLAGS) $(CFLAGS) $(LANGUAGE) $(SANITIZE) $(VECTOR) -fvisibility=hidden -fPIC -MMD -MP
-LINK = $(CC) $(CFLAGS) $(SANITIZE) -pthread $(LDFLAGS)
+LINK = $(CC) $(CFLAGS) $(SANITIZE) $(filter --coverage,$(COUNTERS)) -pthread $(LDFLAGS)
 soname = -Wl,-soname,$(1).so.$(SOMAJOR)
 
 # OpenEXRCore is the C part of OpenEXR; its pkg-config module would link all the C++ libraries too, so only the include
@@ -100,8 +103,8 @@ endif
 # Everything compiled depends on this file, which changes only when compiler or flags do.
 $(BUILD)/flags: FORCE
 	@mkdir -p $(@D)
-	@printf '%s\n' '$(COMPILE) | $(LINK) | $(IO_CFLAGS) | $(IO_LIBS)' | cmp -s - $@ || \
-	 printf '%s\n' '$(COMPILE) | $(LINK) | $(IO_CFLAGS) | $(IO_LIBS)' > $@
+	@printf '%s\n' '$(COMPILE) $(COUNTERS) | $(LINK) | $(IO_CFLAGS) | $(IO_LIBS)' | cmp -s - $@ || \
+	 printf '%s\n' '$(COMPILE) $(COUNTERS) | $(LINK) | $(IO_CFLAGS) | $(IO_LIBS)' > $@
 
 # A list of objects, so that a source file that went away leaves the library as well.
 $(BUILD)/engine.list: OBJECTS = $(ENGINE_OBJ)
@@ -113,7 +116,7 @@ $(BUILD)/engine.list $(BUILD)/io.list: FORCE
 $(BUILD)/obj/src/io/%.o: EXTRA = $(IO_CFLAGS)
 $(BUILD)/obj/src/%.o: src/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
-	$(call run,CC,$(COMPILE) $(WARNINGS) $(EXTRA) -c $< -o $@)
+	$(call run,CC,$(COMPILE) $(COUNTERS) $(WARNINGS) $(EXTRA) -c $< -o $@)
 
 $(BUILD)/obj/tests/%.o: tests/%.c $(BUILD)/flags
 	@mkdir -p $(@D)
@@ -227,6 +230,20 @@ check-asan:
 asan-run: tests
 	@BUILD='$(BUILD)' ASAN_OPTIONS=allocator_may_return_null=1:$$ASAN_OPTIONS \
 	 sh tests/run.sh $(BUILD)/logs $(TEST_BIN)
+
+# What the tests reach of src/, by gcc's counters; not with the scripts that judge names and links of the libraries as shipped.
+# Functions that are made part of each caller count once: what a copy cannot do there the compiler has left out of it.
+COUNT_ALL := -O0 --coverage -Dalways_inline=unused
+COVERAGE_SCRIPTS := $(filter-out %/test_symbols.sh %/test_examples.sh %/test_install.sh,$(TEST_SCRIPTS))
+.PHONY: coverage coverage-run
+coverage:
+	+@$(SUBMAKE) $(JOBS) CC=gcc BUILD=build/coverage CFLAGS=-O2 COUNTERS='$(COUNT_ALL)' all tests
+	+@$(SUBMAKE) CC=gcc BUILD=build/coverage CFLAGS=-O2 COUNTERS='$(COUNT_ALL)' coverage-run
+
+coverage-run: all tests
+	@find $(BUILD)/obj -name '*.gcda' -exec rm -f {} +
+	@BUILD='$(BUILD)' GNOMON='$(abspath $(BUILD)/gnomon)' sh tests/run.sh $(BUILD)/logs $(TEST_BIN) $(COVERAGE_SCRIPTS); \
+	 status=$$?; sh tests/coverage.sh $(BUILD) && exit $$status
 
 # The programs that work on several threads, under the thread sanitizer.
 TSAN_TESTS := $(addprefix $(BUILD)/tests/,unit/test_embedding unit/test_stream unit/test_layers property/test_determinism)
