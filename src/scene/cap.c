@@ -34,18 +34,6 @@ typedef struct work {
 
 static vec3 position(const work *w, uint32_t vertex) { return v3_from(w->scene->prepared.positions[vertex]); }
 
-static int find_boundary(work *w, const unsigned char *may_close)
-{
-    const gnoi_prepared *prep = &w->scene->prepared;
-    unsigned char *taken = gnoi_calloc(w->scene->context, prep->poly_count, 1);
-    int good;
-    for (size_t i = 0; taken && i < prep->poly_count; i++)
-        taken[i] = !prep->polys[i].detail && may_close[gnoi_solid_of(prep, &prep->polys[i])];
-    good = taken && gnoi_boundary_find(w->scene->context, prep, taken, prep->poly_count, &w->boundary);
-    gnoi_free(w->scene->context, taken, prep->poly_count, 1);
-    return good;
-}
-
 static opening *opening_of(const work *w, const gnoi_boundary_edge *e)
 {
     return &w->openings[w->scene->prepared.vertex_solid[e->from]];
@@ -125,43 +113,25 @@ static void judge_openings(work *w)
         w->openings[k].good &= w->openings[k].low < -CAP_RISE * w->openings[k].size;
 }
 
-/* A larger copy of an array of `count` elements; *array is NULL before and after where there is none. */
-static void *larger(gno_context *context, const void *array, size_t count, size_t room, size_t size)
+/* Makes room for `need` elements; what was there stays when memory fails. */
+static void *grow(gno_context *context, void *array, size_t *capacity, size_t need, size_t size)
 {
-    void *copy = array ? gnoi_malloc(context, room, size) : NULL;
-    if (copy && count)
-        memcpy(copy, array, count * size);
-    return copy;
+    void *grown = gnoi_realloc(context, array, *capacity, need, size);
+    if (grown)
+        *capacity = need;
+    return grown ? grown : array;
 }
 
-/* Room for caps; nothing is changed when memory fails. Corner arrays share one capacity, so all grow or none does. */
+/* Caps have no normals or texture coordinates, whose arrays stay as they are. */
 static int make_room(gno_scene *scene, size_t caps, size_t corners)
 {
     gno_context *context = scene->context;
     gnoi_prepared *p = &scene->prepared;
     size_t polys = p->poly_count + caps, rings = p->ring_count + caps + 1, all = p->corner_count + corners;
-    gnoi_poly *poly = larger(context, p->polys, p->poly_count, polys, sizeof *poly);
-    uint32_t *ring = larger(context, p->ring_corner, p->ring_count + 1, rings, sizeof *ring);
-    uint32_t *vertex = larger(context, p->corner_vertex, p->corner_count, all, sizeof *vertex);
-    uint32_t *normal = larger(context, p->corner_normal, p->corner_count, all, sizeof *normal);
-    uint32_t *texcoord = larger(context, p->corner_texcoord, p->corner_count, all, sizeof *texcoord);
-    int good = poly && ring && vertex && (normal || !p->corner_normal) && (texcoord || !p->corner_texcoord);
-    gnoi_free(context, good ? p->polys : poly, good ? p->poly_capacity : polys, sizeof *poly);
-    gnoi_free(context, good ? p->ring_corner : ring, good ? p->ring_capacity : rings, sizeof *ring);
-    gnoi_free(context, good ? p->corner_vertex : vertex, good ? p->corner_capacity : all, sizeof *vertex);
-    gnoi_free(context, good ? p->corner_normal : normal, good ? p->corner_capacity : all, sizeof *normal);
-    gnoi_free(context, good ? p->corner_texcoord : texcoord, good ? p->corner_capacity : all, sizeof *texcoord);
-    if (!good)
-        return 0;
-    p->polys = poly;
-    p->ring_corner = ring;
-    p->corner_vertex = vertex;
-    p->corner_normal = normal;
-    p->corner_texcoord = texcoord;
-    p->poly_capacity = polys;
-    p->ring_capacity = rings;
-    p->corner_capacity = all;
-    return 1;
+    p->polys = grow(context, p->polys, &p->poly_capacity, polys, sizeof *p->polys);
+    p->ring_corner = grow(context, p->ring_corner, &p->ring_capacity, rings, sizeof *p->ring_corner);
+    p->corner_vertex = grow(context, p->corner_vertex, &p->corner_vertex_capacity, all, sizeof *p->corner_vertex);
+    return p->poly_capacity >= polys && p->ring_capacity >= rings && p->corner_vertex_capacity >= all;
 }
 
 /* Appends the cap of part k behind the polygons, rings and corners there are; their counts stay those of real polygons. */
@@ -211,7 +181,7 @@ static int append_caps(work *w)
     return 1;
 }
 
-gno_status gnoi_cap_solids(gno_scene *scene, const unsigned char *may_close)
+gno_status gnoi_cap_solids(gno_scene *scene, const unsigned char *taken)
 {
     gno_context *context = scene->context;
     const gnoi_prepared *prep = &scene->prepared;
@@ -220,7 +190,7 @@ gno_status gnoi_cap_solids(gno_scene *scene, const unsigned char *may_close)
     work w;
     memset(&w, 0, sizeof w);
     w.scene = scene;
-    good = find_boundary(&w, may_close);
+    good = gnoi_boundary_find(context, prep, taken, prep->poly_count, &w.boundary);
     w.sorted = gnoi_malloc(context, w.boundary.count, sizeof *w.sorted);
     w.openings = gnoi_calloc(context, parts, sizeof *w.openings);
     w.next = gnoi_malloc(context, vertices, sizeof *w.next);

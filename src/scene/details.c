@@ -1,6 +1,6 @@
 /* details.c -- polygons that lie on others: windows, doors, lettering.
  *
- * Place in the data flow: normals.c -> here -> order.c. A mesh is marked as lying on a polygon by the caller (detail_of), or polygons
+ * Place in the data flow: emit.c -> here -> solid.c. A mesh is marked as lying on a polygon by the caller (detail_of), or polygons
  * that lie on larger ones are found (find_details). Either way a detail gets the plane of the polygon that bears it, so that depth is the same
  * to the last bit, and a priority above its own; nothing else decides who is in front. It stays a receiver of shadows and casts none.
  * Finding takes no pairs: every polygon that may bear others stands in the cells of a grid as coarse as itself, at most eight of them;
@@ -24,6 +24,8 @@
 #define FACING 0.9
 /* Pairs of edges beyond which two polygons are not compared. */
 #define MOST_PAIRS 4000000
+/* In the place of a prepared polygon's number: a source polygon has more than one. */
+#define SEVERAL 0xfffffffeu
 
 /* ---- what the caller marks ------------------------------------------------------------------------------------------- */
 
@@ -125,64 +127,73 @@ static void lay_on(gnoi_poly *poly, const gnoi_poly *bearer)
         poly->priority = (int16_t)(bearer->priority + 1);
 }
 
-/* The one prepared polygon of a source polygon, NULL where it has no area or was split. */
-static gnoi_poly *only_poly(gnoi_prepared *prep, uint32_t source)
+/* What is laid: prepared polygons by their source. */
+typedef struct laying {
+    gno_scene *scene;
+    uint32_t *only;      /* of source polygons: the one prepared polygon; GNOI_NONE: it has no area; SEVERAL: it was split */
+    unsigned char *laid; /* of objects */
+    uint32_t *way;       /* objects between one and the first that is not a detail or laid already */
+} laying;
+
+static void find_only(const laying *l)
 {
-    size_t low = 0, high = prep->poly_count;
-    while (low < high) {
-        size_t middle = low + (high - low) / 2;
-        if (prep->polys[middle].source < source)
-            low = middle + 1;
-        else
-            high = middle;
+    const gnoi_prepared *prep = &l->scene->prepared;
+    memset(l->only, 0xff, l->scene->polygon_count * sizeof *l->only); /* GNOI_NONE */
+    for (uint32_t i = 0; i < prep->poly_count; i++) {
+        uint32_t *only = &l->only[prep->polys[i].source];
+        *only = *only == GNOI_NONE ? i : SEVERAL;
     }
-    if (low == prep->poly_count || prep->polys[low].source != source)
-        return NULL;
-    return low + 1 < prep->poly_count && prep->polys[low + 1].source == source ? NULL : &prep->polys[low];
 }
 
 /* Lays the polygons of an object on their bearer. */
-static void lay_object(gno_scene *scene, size_t object)
+static void lay_object(const laying *l, size_t object)
 {
-    const gnoi_object *o = &scene->objects[object];
-    gnoi_poly *bearer = only_poly(&scene->prepared, (uint32_t)o->detail_of);
-    for (size_t p = o->first_polygon; p < o->first_polygon + o->polygon_count && bearer; p++) {
-        gnoi_poly *poly = only_poly(&scene->prepared, (uint32_t)p);
-        if (poly)
-            lay_on(poly, bearer);
-    }
+    const gnoi_object *o = &l->scene->objects[object];
+    gnoi_poly *polys = l->scene->prepared.polys;
+    uint32_t bearer = l->only[o->detail_of];
+    for (size_t p = o->first_polygon; p < o->first_polygon + o->polygon_count && bearer < SEVERAL; p++)
+        if (l->only[p] < SEVERAL)
+            lay_on(&polys[l->only[p]], &polys[bearer]);
 }
 
-/* Bearers before what they bear: `way` holds the objects between one and the first that is not a detail or laid already. */
-static void lay_marked(gno_scene *scene, unsigned char *laid, uint32_t *way)
+/* Bearers before what they bear. */
+static void lay_marked(const laying *l)
 {
+    const gno_scene *scene = l->scene;
     for (size_t i = 0; i < scene->object_count; i++) {
         size_t n = 0, at = i;
-        while (!laid[at] && scene->objects[at].detail_of >= 0) {
-            laid[at] = 1;
-            way[n++] = (uint32_t)at;
+        while (!l->laid[at] && scene->objects[at].detail_of >= 0) {
+            l->laid[at] = 1;
+            l->way[n++] = (uint32_t)at;
             at = (size_t)scene->polygon_object[scene->objects[at].detail_of];
         }
         while (n > 0)
-            lay_object(scene, way[--n]);
+            lay_object(l, l->way[--n]);
     }
 }
 
 static gno_status prepare_marked(gno_scene *scene)
 {
     gno_context *context = scene->context;
-    unsigned char *laid = gnoi_calloc(context, scene->object_count, 1);
-    uint32_t *way = gnoi_malloc(context, scene->object_count, sizeof *way);
-    if (laid && way)
-        lay_marked(scene, laid, way);
-    gnoi_free(context, way, scene->object_count, sizeof *way);
-    gnoi_free(context, laid, scene->object_count, 1);
-    return laid && way ? GNO_OK : GNO_ERROR_MEMORY;
+    laying l = {scene, NULL, NULL, NULL};
+    gno_status status = GNO_ERROR_MEMORY;
+    l.only = gnoi_malloc(context, scene->polygon_count, sizeof *l.only);
+    l.laid = gnoi_calloc(context, scene->object_count, 1);
+    l.way = gnoi_malloc(context, scene->object_count, sizeof *l.way);
+    if (l.only && l.laid && l.way) {
+        find_only(&l);
+        lay_marked(&l);
+        status = GNO_OK;
+    }
+    gnoi_free(context, l.way, scene->object_count, sizeof *l.way);
+    gnoi_free(context, l.laid, scene->object_count, 1);
+    gnoi_free(context, l.only, scene->polygon_count, sizeof *l.only);
+    return status;
 }
 
 /* ---- does one polygon lie inside another? ------------------------------------------------------------------------------ */
 
-static vec3 corner_at(const gno_scene *scene, uint32_t corner) { return v3_from(scene->positions[scene->prepared.corner_vertex[corner]]); }
+static vec3 corner_at(const gno_scene *scene, uint32_t corner) { return v3_from(scene->prepared.positions[scene->prepared.corner_vertex[corner]]); }
 
 typedef struct point2 {
     double x, y;
@@ -197,7 +208,7 @@ typedef struct flat {
 
 static point2 flat_corner(const flat *f, uint32_t corner)
 {
-    const double *p = f->scene->positions[f->scene->prepared.corner_vertex[corner]];
+    const double *p = f->scene->prepared.positions[f->scene->prepared.corner_vertex[corner]];
     point2 r;
     r.x = p[f->u];
     r.y = p[f->v];
@@ -274,7 +285,7 @@ static int bears(const gno_scene *scene, const gnoi_poly *bearer, const gnoi_pol
     double x = fabs(n.x), y = fabs(n.y), z = fabs(n.z);
     if (v3_dot(n, v3_from(poly->n)) < FACING || (double)bearer->corner_count * poly->corner_count > MOST_PAIRS)
         return 0;
-    f.tolerance = gnoi_plane_tolerance(&scene->prepared, (const double(*)[3])scene->positions, bearer);
+    f.tolerance = gnoi_plane_tolerance(&scene->prepared, (const double(*)[3])scene->prepared.positions, bearer);
     for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++)
         if (fabs(v3_dot(n, corner_at(scene, i)) + bearer->d) > f.tolerance)
             return 0;
@@ -308,7 +319,7 @@ static box box_of(const gno_scene *scene, const gnoi_poly *poly)
 {
     box b = {{HUGE_VAL, HUGE_VAL, HUGE_VAL}, {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL}};
     for (uint32_t i = poly->corner; i < poly->corner + poly->corner_count; i++) {
-        const double *p = scene->positions[scene->prepared.corner_vertex[i]];
+        const double *p = scene->prepared.positions[scene->prepared.corner_vertex[i]];
         for (int k = 0; k < 3; k++) {
             b.lower[k] = p[k] < b.lower[k] ? p[k] : b.lower[k];
             b.upper[k] = p[k] > b.upper[k] ? p[k] : b.upper[k];
@@ -371,7 +382,7 @@ static void enter(finder *f, size_t place, int fill)
 {
     const gnoi_poly *poly = &f->scene->prepared.polys[f->order[place].value];
     box b = box_of(f->scene, poly);
-    double slack = gnoi_plane_tolerance(&f->scene->prepared, (const double(*)[3])f->scene->positions, poly);
+    double slack = gnoi_plane_tolerance(&f->scene->prepared, (const double(*)[3])f->scene->prepared.positions, poly);
     int64_t low[3], high[3], c[3];
     for (int k = 0; k < 3; k++) {
         low[k] = cell_of(f->scene, f->level[place], k, b.lower[k] - slack);

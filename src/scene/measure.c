@@ -1,7 +1,8 @@
 /* measure.c -- plane, area and planarity of every polygon of a scene.
  *
- * Place in the data flow: first step of gnoi_scene_prepare; its records become the prepared polygons.
- * Invariants: record p depends on source polygon p and, for the verdict on bent ones, on the scene's scale alone, so the
+ * Place in the data flow: first step of gnoi_scene_prepare. Planes are not kept: emit.c measures again what is left, in the order in
+ * which it is stored, which takes less time than writing and fetching them.
+ * Invariants: kind p depends on source polygon p and, for the verdict on bent ones, on the scene's scale alone, so the
  * result is the same for any number of threads; a plane follows the winding of the outer ring.
  * Source: Newell's sum for the normal (Sutherland, Sproull and Schumacker 1974), taken from the ring's first corner
  * rather than the origin, so that a small polygon far out loses no digits.
@@ -26,10 +27,12 @@ typedef struct chunk {
 
 typedef struct measuring {
     const gno_scene *scene;
-    gnoi_poly *polys;
     unsigned char *kinds;
     chunk *chunks;
+    unsigned char *material_flags, *object_flags; /* GNOI_IS_SMOOTH, GNOI_USES_NORMALS, DECIDES */
 } measuring;
+
+#define DECIDES 32u /* the object's shading goes before the material's */
 
 static void clear_bounds(bounds *box)
 {
@@ -94,8 +97,7 @@ static int triangle_has_area(double length, double side0, double side1, double s
     return length > bound * perimeter * perimeter;
 }
 
-/* Apart from the function that other files call, so that the loop over a scene's triangles takes it in line. */
-static inline int measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
+int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
 {
     vec3 a = v3_from(positions[vertex[0]]), b = v3_from(positions[vertex[1]]), c = v3_from(positions[vertex[2]]);
     vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), bc = v3_sub(c, b);
@@ -108,17 +110,11 @@ static inline int measure_triangle(const double (*positions)[3], const uint32_t 
     return 1;
 }
 
-int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
-{
-    return measure_triangle(positions, vertex, poly);
-}
-
-static int measure_ring(const double (*positions)[3], const int *vertex, unsigned count, gnoi_poly *poly)
+int gnoi_measure_ring(const double (*positions)[3], const uint32_t *vertex, size_t count, gnoi_poly *poly)
 {
     vec3 first = v3_from(positions[vertex[0]]), normal = v3(0, 0, 0), sum = v3(0, 0, 0), previous = v3(0, 0, 0);
     double perimeter = 0, length;
-    unsigned i;
-    for (i = 1; i < count; i++) {
+    for (size_t i = 1; i < count; i++) {
         vec3 p = v3_sub(v3_from(positions[vertex[i]]), first);
         normal = v3_add(normal, v3_cross(previous, p));
         perimeter += v3_length(v3_sub(p, previous));
@@ -130,118 +126,112 @@ static int measure_ring(const double (*positions)[3], const int *vertex, unsigne
     if (!(length > 2 * GNOI_DEGENERATE * perimeter * perimeter)) {
         return 0;
     }
-    set_plane(poly, normal, length, v3_mad(first, sum, 1.0 / count));
+    set_plane(poly, normal, length, v3_mad(first, sum, 1.0 / (double)count));
     return 1;
-}
-
-/* Counts rings of three corners or more and their corners into poly, their bounds into box; returns the largest distance
- * of a corner from the plane. */
-static double measure_rings(const gno_scene *scene, size_t p, gnoi_poly *poly, bounds *box)
-{
-    unsigned ring, corner, rings = 0, corners = 0;
-    double off = 0;
-    vec3 n = v3_from(poly->n);
-    for (ring = scene->polygon_start[p]; ring < scene->polygon_start[p + 1]; ring++) {
-        unsigned from = scene->ring_start[ring], to = scene->ring_start[ring + 1];
-        if (to - from < 3) {
-            continue;
-        }
-        rings++;
-        corners += to - from;
-        for (corner = from; corner < to; corner++) {
-            const double *position = scene->positions[scene->corner_vertex[corner]];
-            double distance = fabs(v3_dot(n, v3_from(position)) + poly->d);
-            off = distance > off ? distance : off;
-            add_point(box, position);
-        }
-    }
-    poly->ring_count = rings & 0xffffffu;
-    poly->corner_count = corners;
-    return off;
 }
 
 /* ---- one polygon ----------------------------------------------------------------------------------------------- */
 
-static void set_attributes(const gno_scene *scene, size_t p, gnoi_poly *poly)
+/* A scene's indices are not negative. */
+static const uint32_t *corners_of(const gno_scene *scene) { return (const uint32_t *)scene->corner_vertex; }
+
+/* The largest distance of a corner of a ring of three corners or more from the plane; adds these corners to the box. */
+static double reach_of_rings(const gno_scene *scene, size_t p, const gnoi_poly *plane, bounds *box)
 {
-    int number = scene->polygon_material[p];
-    const gno_material *material = &scene->materials[number];
-    const gnoi_object *object = &scene->objects[scene->polygon_object[p]];
-    const double *t = material->transmission;
-    unsigned shading = object->shading >= 0 ? (unsigned)object->shading : (unsigned)material->shading;
-    memset(poly, 0, sizeof *poly); /* its padding too: the same scene gives the same bytes */
-    poly->ring = scene->polygon_start[p];
-    poly->corner = scene->ring_start[poly->ring];
-    poly->triangle = GNOI_NONE;
-    poly->source = (uint32_t)p;
-    poly->shading = shading & 15u;
-    poly->two_sided = material->two_sided != 0;
-    poly->opaque = t[0] == 0 && t[1] == 0 && t[2] == 0 && !gnoi_has_holes(scene, material);
-    poly->material = (uint16_t)number;
-    poly->priority = (int16_t)object->priority;
+    double off = 0;
+    vec3 n = v3_from(plane->n);
+    for (unsigned ring = scene->polygon_start[p]; ring < scene->polygon_start[p + 1]; ring++) {
+        unsigned from = scene->ring_start[ring], to = scene->ring_start[ring + 1];
+        for (unsigned corner = from; corner < to && to - from >= 3; corner++) {
+            const double *position = scene->positions[scene->corner_vertex[corner]];
+            double distance = fabs(v3_dot(n, v3_from(position)) + plane->d);
+            off = distance > off ? distance : off;
+            add_point(box, position);
+        }
+    }
+    return off;
 }
 
-static gnoi_kind measure_any(const gno_scene *scene, size_t p, gnoi_poly *poly, bounds *box, size_t *dropped)
+/* The plane of the outer ring; 0 when it has no area. */
+static int measure_outer(const gno_scene *scene, size_t p, gnoi_poly *plane)
 {
-    const double(*positions)[3] = (const double(*)[3])scene->positions;
-    unsigned rings = scene->polygon_start[p + 1] - poly->ring;
-    unsigned count = scene->ring_start[poly->ring + 1] - poly->corner;
+    unsigned ring = scene->polygon_start[p], from = scene->ring_start[ring], count = scene->ring_start[ring + 1] - from;
+    return count >= 3 && gnoi_measure_ring((const double(*)[3])scene->positions, corners_of(scene) + from, count, plane);
+}
+
+static gnoi_kind measure_any(const gno_scene *scene, size_t p, bounds *box)
+{
+    gnoi_poly plane;
     bounds own;
     double off;
-    poly->ring_count = 1;
-    poly->corner_count = count;
-    if (count < 3 || !measure_ring(positions, scene->corner_vertex + poly->corner, count, poly)) {
+    if (!measure_outer(scene, p, &plane)) {
         return GNOI_EMPTY;
     }
     clear_bounds(&own);
-    off = measure_rings(scene, p, poly, &own);
+    off = reach_of_rings(scene, p, &plane, &own);
     add_bounds(box, &own);
-    *dropped += rings - poly->ring_count;
     return off > GNOI_PLANAR * largest_side(&own) ? GNOI_BENT : GNOI_KEPT;
 }
 
-static gnoi_kind measure_polygon(const gno_scene *scene, size_t p, gnoi_poly *poly, bounds *box, size_t *dropped)
+/* As gnoi_measure_triangle, without the plane. */
+static gnoi_kind judge_triangle(const gno_scene *scene, const uint32_t *vertex, bounds *box)
 {
-    const double(*positions)[3] = (const double(*)[3])scene->positions;
-    const int *vertex;
-    uint32_t v[3];
-    int i;
-    set_attributes(scene, p, poly);
-    if (scene->polygon_start[p + 1] - poly->ring != 1 || scene->ring_start[poly->ring + 1] - poly->corner != 3) {
-        return measure_any(scene, p, poly, box, dropped);
-    }
-    vertex = scene->corner_vertex + poly->corner;
-    for (i = 0; i < 3; i++) {
-        v[i] = (uint32_t)vertex[i];
-    }
-    poly->ring_count = 1;
-    poly->corner_count = 3;
-    if (!measure_triangle(positions, v, poly)) {
+    vec3 a = v3_from(scene->positions[vertex[0]]), b = v3_from(scene->positions[vertex[1]]), c = v3_from(scene->positions[vertex[2]]);
+    vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), bc = v3_sub(c, b);
+    if (!triangle_has_area(v3_length(v3_cross(ab, ac)), v3_dot(ab, ab), v3_dot(ac, ac), v3_dot(bc, bc))) {
         return GNOI_EMPTY;
     }
-    for (i = 0; i < 3; i++) {
-        add_point(box, positions[v[i]]);
+    for (int i = 0; i < 3; i++) {
+        add_point(box, scene->positions[vertex[i]]);
     }
     return GNOI_KEPT;
+}
+
+static unsigned shading_flags(int shading)
+{
+    return shading == GNO_SHADING_GOURAUD || shading == GNO_SHADING_PHONG ? GNOI_IS_SMOOTH : 0;
+}
+
+static void set_flags(const measuring *m)
+{
+    for (size_t i = 0; i < m->scene->material_count; i++) {
+        m->material_flags[i] = (unsigned char)shading_flags((int)m->scene->materials[i].shading);
+    }
+    for (size_t i = 0; i < m->scene->object_count; i++) {
+        const gnoi_object *o = &m->scene->objects[i];
+        unsigned flags = o->shading >= 0 ? DECIDES | shading_flags(o->shading) : 0;
+        m->object_flags[i] = (unsigned char)(flags | (o->average_normals ? 0 : GNOI_USES_NORMALS));
+    }
+}
+
+static unsigned flags_of(const measuring *m, size_t p)
+{
+    unsigned object = m->object_flags[m->scene->polygon_object[p]];
+    unsigned shading = object & DECIDES ? object : m->material_flags[m->scene->polygon_material[p]];
+    return shading & GNOI_IS_SMOOTH ? GNOI_IS_SMOOTH | (object & GNOI_USES_NORMALS) : 0;
 }
 
 static gno_status measure_chunk(void *user, int worker, size_t piece)
 {
     const measuring *m = user;
+    const gno_scene *scene = m->scene;
     size_t p = piece * CHUNK, end = p + CHUNK;
-    chunk *c = &m->chunks[piece];
+    chunk *c = &m->chunks[piece], sums; /* a copy of its own: no two threads write to one line of the cache */
     (void)worker;
-    memset(c, 0, sizeof *c);
-    clear_bounds(&c->box);
-    end = end < m->scene->polygon_count ? end : m->scene->polygon_count;
+    memset(&sums, 0, sizeof sums);
+    clear_bounds(&sums.box);
+    end = end < scene->polygon_count ? end : scene->polygon_count;
     for (; p < end; p++) {
-        gnoi_poly *poly = &m->polys[p];
-        gnoi_kind kind = measure_polygon(m->scene, p, poly, &c->box, &c->measures.dropped);
-        m->kinds[p] = (unsigned char)kind;
-        c->measures.empty += kind == GNOI_EMPTY;
-        c->bent += kind == GNOI_BENT;
-        c->measures.smooth |= kind != GNOI_EMPTY && gnoi_is_smooth(poly);
+        unsigned ring = scene->polygon_start[p], from = scene->ring_start[ring];
+        int triangle = scene->polygon_start[p + 1] - ring == 1 && scene->ring_start[ring + 1] - from == 3;
+        gnoi_kind kind = triangle ? judge_triangle(scene, corners_of(scene) + from, &sums.box) : measure_any(scene, p, &sums.box);
+        unsigned flags = flags_of(m, p);
+        m->kinds[p] = (unsigned char)((unsigned)kind | flags | (triangle ? GNOI_IS_TRIANGLE : 0));
+        sums.measures.empty += kind == GNOI_EMPTY;
+        sums.bent += kind == GNOI_BENT;
+        sums.measures.smooth |= kind != GNOI_EMPTY && (flags & GNOI_IS_SMOOTH);
     }
+    *c = sums;
     return GNO_OK;
 }
 
@@ -266,49 +256,59 @@ static size_t judge_bent(const measuring *m, size_t piece, double tolerance)
 {
     size_t p = piece * CHUNK, split = 0, left = m->chunks[piece].bent;
     for (; left > 0; p++) {
-        if (m->kinds[p] == GNOI_BENT) {
+        if ((m->kinds[p] & GNOI_KIND_MASK) == GNOI_BENT) {
+            gnoi_poly plane;
             bounds unused;
+            int is_split;
             clear_bounds(&unused);
             left--;
-            m->kinds[p] = GNOI_KEPT;
-            if (measure_rings(m->scene, p, &m->polys[p], &unused) > tolerance) {
-                m->kinds[p] = GNOI_SPLIT;
-                split++;
-            }
+            is_split = measure_outer(m->scene, p, &plane) && reach_of_rings(m->scene, p, &plane, &unused) > tolerance;
+            m->kinds[p] = (unsigned char)((m->kinds[p] & ~GNOI_KIND_MASK) | (unsigned)(is_split ? GNOI_SPLIT : GNOI_KEPT));
+            split += (size_t)is_split;
         }
     }
     return split;
 }
 
-gno_status gnoi_measure_scene(gno_scene *scene, int threads, gnoi_poly *polys, unsigned char *kinds, gnoi_measures *measures)
+static void add_chunks(gno_scene *scene, const measuring *m, size_t pieces, gnoi_measures *measures)
 {
-    size_t pieces = (scene->polygon_count + CHUNK - 1) / CHUNK, i;
-    measuring m;
     bounds box;
-    gno_status status;
+    clear_bounds(&box);
+    for (size_t i = 0; i < pieces; i++) {
+        add_bounds(&box, &m->chunks[i].box);
+        measures->empty += m->chunks[i].measures.empty;
+        measures->smooth |= m->chunks[i].measures.smooth;
+    }
+    set_scale(&scene->prepared, &box);
+    for (size_t i = 0; i < pieces; i++) {
+        measures->split += judge_bent(m, i, GNOI_COPLANAR * scene->prepared.scale);
+    }
+}
+
+gno_status gnoi_measure_scene(gno_scene *scene, int threads, unsigned char *kinds, gnoi_measures *measures)
+{
+    gno_context *context = scene->context;
+    size_t pieces = (scene->polygon_count + CHUNK - 1) / CHUNK;
+    gno_status status = GNO_OK;
+    measuring m;
     memset(measures, 0, sizeof *measures);
     m.scene = scene;
-    m.polys = polys;
     m.kinds = kinds;
-    m.chunks = gnoi_malloc(scene->context, pieces, sizeof *m.chunks);
-    if (!m.chunks) {
-        return gnoi_fail(scene->context, GNO_ERROR_MEMORY, "prepare: out of memory");
+    m.chunks = gnoi_malloc(context, pieces, sizeof *m.chunks);
+    m.material_flags = gnoi_malloc(context, scene->material_count, 1);
+    m.object_flags = gnoi_malloc(context, scene->object_count, 1);
+    if (!m.chunks || !m.material_flags || !m.object_flags) {
+        status = gnoi_fail(context, GNO_ERROR_MEMORY, "prepare: out of memory");
+    } else {
+        set_flags(&m);
+        status = gnoi_parallel(context, threads, pieces, "prepare", measure_chunk, &m);
     }
-    status = gnoi_parallel(scene->context, threads, pieces, "prepare", measure_chunk, &m);
     if (status == GNO_OK) {
-        clear_bounds(&box);
-        for (i = 0; i < pieces; i++) {
-            add_bounds(&box, &m.chunks[i].box);
-            measures->empty += m.chunks[i].measures.empty;
-            measures->dropped += m.chunks[i].measures.dropped;
-            measures->smooth |= m.chunks[i].measures.smooth;
-        }
-        set_scale(&scene->prepared, &box);
-        for (i = 0; i < pieces; i++) {
-            measures->split += judge_bent(&m, i, GNOI_COPLANAR * scene->prepared.scale);
-        }
+        add_chunks(scene, &m, pieces, measures);
     }
-    gnoi_free(scene->context, m.chunks, pieces, sizeof *m.chunks);
+    gnoi_free(context, m.chunks, pieces, sizeof *m.chunks);
+    gnoi_free(context, m.material_flags, scene->material_count, 1);
+    gnoi_free(context, m.object_flags, scene->object_count, 1);
     return status;
 }
 

@@ -1,19 +1,27 @@
-/* order.c -- prepared polygons in the order in which they lie in space.
+/* order.c -- the polygons that are left, in the order in which they lie in space.
  *
- * Place in the data flow: last step of gnoi_scene_prepare. Files list polygons and vertices in any order; every later pass
- * visits neighbours together and would miss the cache on each of them.
- * Vertices at one place become one, so that edges that meet do so by number too.
- * Polygons are sorted by the Morton number of their first corner (Morton 1966); rings, corners, vertices and normals are then
- * numbered in the order of first use. Nothing but numbers changes: `source` still names the polygon as the caller knows it.
- * Invariant: prepared.positions and prepared.normals hold just what the corners name.
+ * Place in the data flow: measure.c, split.c -> here -> emit.c, which stores them in this order. Files list polygons in any order; every
+ * later pass visits neighbours together and would miss the cache on each of them.
+ * Polygons are sorted by the Morton number of their first corner (Morton 1966), equal ones as the caller lists them. `source` still
+ * names a polygon as the caller knows it.
  */
-#include "base/sort.h"
+#include "base/parallel.h"
+#include "base/sort_parallel.h"
 #include "scene/prepare.h"
 
 #include <string.h>
 
 #define MORTON_BITS 10
-#define FEW_POLYGONS 1024 /* below, everything fits the cache as it is; only the copies are made */
+#define FEW_POLYGONS 1024 /* below, everything fits the cache as it is */
+#define PIECE 16384       /* vertices or polygons */
+
+typedef struct ordering {
+    gnoi_preparing *w;
+    double extent;     /* the longest side of the scene's bounds */
+    uint32_t *place;   /* Morton number of each scene vertex; NULL: all items are equal */
+    size_t *first;     /* of each piece of polygons: where its items begin */
+    gnoi_keyed *items;
+} ordering;
 
 static uint32_t spread(uint32_t x)
 {
@@ -23,200 +31,143 @@ static uint32_t spread(uint32_t x)
     return (x | x << 2) & 0x09249249u;
 }
 
-/* Cells are cubes of the longest extent: a flat scene cut as finely in height would come in layers. */
+/* Cells are cubes of the longest extent: a flat scene cut as finely in height would come in layers. Vertices that no item uses may lie
+ * outside the bounds. */
 static uint32_t place_of(const gnoi_prepared *prep, double extent, const double p[3])
 {
     uint32_t key = 0;
     for (int k = 0; k < 3; k++) {
         double t = extent > 0 ? (p[k] - prep->lower[k]) / extent : 0;
+        t = t > 0 ? t : 0;
+        t = t < 1 ? t : 1;
         key |= spread((uint32_t)(t * ((1 << MORTON_BITS) - 1))) << k;
     }
     return key;
 }
 
-/* 0 when stopped. */
-static int sort_polys(const gno_scene *scene, gnoi_keyed *keys, gnoi_keyed *scratch)
+static gno_status place_piece(void *user, int worker, size_t piece)
 {
-    const gnoi_prepared *prep = &scene->prepared;
-    double extent = 0;
+    const ordering *o = user;
+    const gno_scene *scene = o->w->scene;
+    size_t end = (piece + 1) * PIECE < scene->vertex_count ? (piece + 1) * PIECE : scene->vertex_count;
+    (void)worker;
+    for (size_t v = piece * PIECE; v < end; v++)
+        o->place[v] = place_of(o->w->out, o->extent, scene->positions[v]);
+    return GNO_OK;
+}
+
+/* ---- items -------------------------------------------------------------------------------------------------------- */
+
+/* The first split triangle of a polygon from `source` on. */
+static size_t first_split(const gnoi_splits *splits, size_t source)
+{
+    size_t low = 0, high = splits->count;
+    while (low < high) {
+        size_t middle = low + (high - low) / 2;
+        if (splits->source[middle] < source)
+            low = middle + 1;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+static void add_item(const ordering *o, size_t *at, size_t item, size_t corner)
+{
+    o->items[*at].key = o->place ? o->place[o->w->scene->corner_vertex[corner]] : 0;
+    o->items[(*at)++].value = (uint32_t)item;
+}
+
+static size_t piece_end(const gno_scene *scene, size_t piece)
+{
+    return (piece + 1) * PIECE < scene->polygon_count ? (piece + 1) * PIECE : scene->polygon_count;
+}
+
+static gno_status list_piece(void *user, int worker, size_t piece)
+{
+    const ordering *o = user;
+    const gnoi_preparing *w = o->w;
+    const gno_scene *scene = w->scene;
+    const gnoi_splits *splits = &w->splits;
+    size_t at = o->first[piece], t = first_split(splits, piece * PIECE);
+    (void)worker;
+    for (size_t p = piece * PIECE, end = piece_end(scene, piece); p < end; p++) {
+        if (gnoi_kind_of(w, p) == GNOI_KEPT)
+            add_item(o, &at, p, scene->ring_start[scene->polygon_start[p]]);
+        for (; t < splits->count && splits->source[t] == p; t++)
+            if (splits->has_area[t])
+                add_item(o, &at, scene->polygon_count + t, splits->corner[t][0]);
+    }
+    return GNO_OK;
+}
+
+/* Counts items, a number for each piece becomes where it begins; returns their sum. */
+static size_t count_items(const ordering *o, size_t pieces)
+{
+    const gnoi_preparing *w = o->w;
+    size_t sum = 0, t = 0;
+    for (size_t k = 0; k < pieces; k++) {
+        size_t kept = 0, end = piece_end(w->scene, k);
+        o->first[k] = sum;
+        for (size_t p = k * PIECE; p < end; p++)
+            kept += gnoi_kind_of(w, p) == GNOI_KEPT;
+        sum += kept;
+        for (; t < w->splits.count && w->splits.source[t] < end; t++)
+            sum += w->splits.has_area[t];
+    }
+    return sum;
+}
+
+/* ---- the whole ------------------------------------------------------------------------------------------------------ */
+
+static gno_status fill_places(ordering *o)
+{
+    gno_context *context = o->w->scene->context;
+    const gnoi_prepared *prep = o->w->out;
+    size_t vertices = o->w->scene->vertex_count;
     for (int k = 0; k < 3; k++)
-        extent = prep->upper[k] - prep->lower[k] > extent ? prep->upper[k] - prep->lower[k] : extent;
-    for (size_t i = 0; i < prep->poly_count; i++) {
-        keys[i].key = 0;
-        keys[i].value = (uint32_t)i;
-        if (prep->poly_count >= FEW_POLYGONS)
-            keys[i].key = place_of(prep, extent, scene->positions[prep->corner_vertex[prep->polys[i].corner]]);
-        if (gnoi_stopped_at(scene->context, i))
-            return 0;
+        o->extent = prep->upper[k] - prep->lower[k] > o->extent ? prep->upper[k] - prep->lower[k] : o->extent;
+    o->place = gnoi_malloc(context, vertices, sizeof *o->place);
+    if (!o->place)
+        return GNO_ERROR_MEMORY;
+    return gnoi_parallel(context, o->w->threads, (vertices + PIECE - 1) / PIECE, "prepare", place_piece, o);
+}
+
+/* Lists the items, sorts them and keeps their numbers. */
+static gno_status sort_items(ordering *o, size_t pieces)
+{
+    gnoi_preparing *w = o->w;
+    gno_context *context = w->scene->context;
+    size_t count = w->item_count;
+    gnoi_keyed *sorted = o->items;
+    gno_status status = gnoi_parallel(context, w->threads, pieces, "prepare", list_piece, o);
+    if (status == GNO_OK && o->place) {
+        sorted = gnoi_sort_parallel(context, w->threads, "prepare", o->items, o->items + count, count, 3 * MORTON_BITS);
+        status = sorted ? GNO_OK : GNO_ERROR_MEMORY;
     }
-    if (prep->poly_count >= FEW_POLYGONS)
-        gnoi_sort(keys, scratch, prep->poly_count);
-    return !gnoi_stopped(scene->context);
+    for (size_t i = 0; i < count && status == GNO_OK; i++)
+        w->order[i] = sorted[i].value;
+    return status;
 }
 
-/* Numbers given in the order of first use. */
-typedef struct numbering {
-    uint32_t *of; /* GNOI_NONE: not used yet */
-    uint32_t count;
-} numbering;
-
-static uint32_t number(numbering *n, uint32_t old, int *is_new)
+gno_status gnoi_order_items(gnoi_preparing *w)
 {
-    *is_new = n->of[old] == GNOI_NONE;
-    if (*is_new)
-        n->of[old] = n->count++;
-    return n->of[old];
-}
-
-typedef struct ordering {
-    const gno_scene *scene;
-    const gnoi_prepared *from;
-    gnoi_prepared to;
-    numbering vertices, normals;
-    uint32_t *table, table_mask; /* prepared vertices by hash of position */
-} ordering;
-
-static uint32_t hash_position(const double p[3])
-{
-    uint64_t h = 0;
-    for (int k = 0; k < 3; k++) {
-        double v = p[k] + 0.0; /* -0 becomes 0 */
-        uint64_t bits;
-        memcpy(&bits, &v, sizeof bits);
-        h = (h ^ bits) * 0x9e3779b97f4a7c15u;
-        h ^= h >> 29;
-    }
-    return (uint32_t)(h >> 16);
-}
-
-/* The number of a scene vertex: that of the first one at its place. */
-static uint32_t vertex_number(ordering *o, uint32_t old)
-{
-    const double *p = o->scene->positions[old];
-    uint32_t slot;
-    if (o->vertices.of[old] != GNOI_NONE)
-        return o->vertices.of[old];
-    for (slot = hash_position(p) & o->table_mask; o->table[slot] != GNOI_NONE; slot = (slot + 1) & o->table_mask) {
-        const double *q = o->to.positions[o->table[slot]];
-        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
-            return o->vertices.of[old] = o->table[slot];
-    }
-    memcpy(o->to.positions[o->vertices.count], p, sizeof o->to.positions[0]);
-    o->table[slot] = o->vertices.count;
-    return o->vertices.of[old] = o->vertices.count++;
-}
-
-static void copy_corner(ordering *o, uint32_t from, uint32_t to)
-{
-    int is_new;
-    uint32_t old, v;
-    o->to.corner_vertex[to] = vertex_number(o, o->from->corner_vertex[from]);
-    if (o->from->corner_texcoord)
-        o->to.corner_texcoord[to] = o->from->corner_texcoord[from];
-    if (!o->from->corner_normal)
-        return;
-    old = o->from->corner_normal[from];
-    o->to.corner_normal[to] = GNOI_NONE;
-    if (old == GNOI_NONE)
-        return;
-    v = o->to.corner_normal[to] = number(&o->normals, old, &is_new);
-    if (is_new)
-        memcpy(o->to.normals[v], o->from->normals[old], sizeof o->to.normals[v]);
-}
-
-static void copy_poly(ordering *o, const gnoi_poly *poly, size_t index)
-{
-    gnoi_prepared *to = &o->to;
-    gnoi_poly *copy = &to->polys[index];
-    uint32_t shift = (uint32_t)to->corner_count - poly->corner; /* modulo 2^32 */
-    *copy = *poly;
-    copy->ring = (uint32_t)to->ring_count;
-    copy->corner = (uint32_t)to->corner_count;
-    for (uint32_t r = poly->ring; r < poly->ring + poly->ring_count; r++)
-        to->ring_corner[to->ring_count++] = o->from->ring_corner[r] + shift;
-    for (uint32_t i = 0; i < poly->corner_count; i++)
-        copy_corner(o, poly->corner + i, copy->corner + i);
-    to->corner_count += poly->corner_count;
-    if (poly->triangle == GNOI_NONE)
-        return;
-    copy->triangle = (uint32_t)to->triangle_count;
-    for (size_t t = 0; t < gnoi_triangles_of(poly); t++)
-        for (int k = 0; k < 3; k++)
-            to->triangles[to->triangle_count + t][k] = o->from->triangles[poly->triangle + t][k] + shift;
-    to->triangle_count += gnoi_triangles_of(poly);
-}
-
-static int reserve(ordering *o)
-{
-    gno_context *context = o->scene->context;
-    const gnoi_prepared *from = o->from;
-    gnoi_prepared *to = &o->to;
-    to->poly_count = to->poly_capacity = from->poly_count;
-    to->ring_capacity = from->ring_count + 1;
-    to->corner_capacity = from->corner_count;
-    to->normal_capacity = from->normal_count;
-    to->triangle_capacity = from->triangle_count;
-    to->vertex_capacity = o->scene->vertex_count;
-    to->polys = gnoi_malloc(context, to->poly_capacity, sizeof *to->polys);
-    to->ring_corner = gnoi_malloc(context, to->ring_capacity, sizeof *to->ring_corner);
-    to->corner_vertex = gnoi_malloc(context, to->corner_capacity, sizeof *to->corner_vertex);
-    to->positions = gnoi_malloc(context, to->vertex_capacity, sizeof *to->positions);
-    o->vertices.of = gnoi_malloc(context, o->scene->vertex_count, sizeof *o->vertices.of);
-    o->normals.of = gnoi_malloc(context, from->normal_count, sizeof *o->normals.of);
-    for (o->table_mask = 15; o->table_mask < 2 * o->scene->vertex_count; o->table_mask = 2 * o->table_mask + 1)
-        ;
-    o->table = gnoi_malloc(context, (size_t)o->table_mask + 1, sizeof *o->table);
-    if (from->corner_normal)
-        to->corner_normal = gnoi_malloc(context, to->corner_capacity, sizeof *to->corner_normal);
-    if (from->corner_texcoord)
-        to->corner_texcoord = gnoi_malloc(context, to->corner_capacity, sizeof *to->corner_texcoord);
-    if (from->normals)
-        to->normals = gnoi_malloc(context, to->normal_capacity, sizeof *to->normals);
-    if (from->triangles)
-        to->triangles = gnoi_malloc(context, to->triangle_capacity, sizeof *to->triangles);
-    return to->polys && to->ring_corner && to->corner_vertex && to->positions && o->vertices.of && o->normals.of && o->table &&
-           (!from->corner_normal || to->corner_normal) && (!from->corner_texcoord || to->corner_texcoord) &&
-           (!from->normals || to->normals) && (!from->triangles || to->triangles);
-}
-
-gno_status gnoi_order_polygons(gno_scene *scene)
-{
-    gno_context *context = scene->context;
-    gnoi_prepared *prep = &scene->prepared;
-    size_t count = prep->poly_count, normal_count = prep->normal_count;
-    gnoi_keyed *keys = gnoi_malloc(context, 2 * count, sizeof *keys);
-    ordering o;
-    int good;
-    memset(&o, 0, sizeof o);
-    o.scene = scene;
-    o.from = prep;
-    good = keys && reserve(&o) && sort_polys(scene, keys, keys + count);
-    if (good) {
-        memset(o.vertices.of, 0xff, scene->vertex_count * sizeof *o.vertices.of); /* GNOI_NONE */
-        memset(o.table, 0xff, ((size_t)o.table_mask + 1) * sizeof *o.table);
-        memset(o.normals.of, 0xff, normal_count * sizeof *o.normals.of);
-        for (size_t i = 0; i < count && good; i++) {
-            copy_poly(&o, &prep->polys[keys[i].value], i);
-            good = !gnoi_stopped_at(context, i);
-        }
-        o.to.ring_corner[o.to.ring_count] = (uint32_t)o.to.corner_count;
-        o.to.vertex_count = o.vertices.count;
-        o.to.normal_count = o.normals.count;
-        memcpy(o.to.lower, prep->lower, sizeof o.to.lower);
-        memcpy(o.to.upper, prep->upper, sizeof o.to.upper);
-        o.to.scale = prep->scale;
-        o.to.problems = prep->problems;
-    }
-    gnoi_free(context, keys, 2 * count, sizeof *keys);
-    gnoi_free(context, o.table, (size_t)o.table_mask + 1, sizeof *o.table);
-    if (good) {
-        gnoi_prepared_free(context, prep);
-        *prep = o.to;
-        good = gnoi_find_solids(scene, o.vertices.of) == GNO_OK;
-    } else {
-        gnoi_prepared_free(context, &o.to);
-    }
-    gnoi_free(context, o.vertices.of, scene->vertex_count, sizeof *o.vertices.of);
-    gnoi_free(context, o.normals.of, normal_count, sizeof *o.normals.of);
-    return good ? GNO_OK : GNO_ERROR_MEMORY;
+    gno_context *context = w->scene->context;
+    size_t pieces = (w->scene->polygon_count + PIECE - 1) / PIECE;
+    ordering o = {w, 0, NULL, NULL, NULL};
+    gno_status status = GNO_OK;
+    o.first = gnoi_malloc(context, pieces, sizeof *o.first);
+    w->item_count = o.first ? count_items(&o, pieces) : 0;
+    w->order = gnoi_malloc(context, w->item_count, sizeof *w->order);
+    o.items = gnoi_malloc(context, 2 * w->item_count, sizeof *o.items);
+    if (!o.first || !w->order || !o.items)
+        status = GNO_ERROR_MEMORY;
+    if (status == GNO_OK && w->item_count >= FEW_POLYGONS)
+        status = fill_places(&o);
+    if (status == GNO_OK)
+        status = sort_items(&o, pieces);
+    gnoi_free(context, o.place, w->scene->vertex_count, sizeof *o.place);
+    gnoi_free(context, o.items, 2 * w->item_count, sizeof *o.items);
+    gnoi_free(context, o.first, pieces, sizeof *o.first);
+    return status;
 }

@@ -7,6 +7,7 @@
  */
 #include "base/sort.h"
 #include "scene/prepare.h"
+#include "scene/weld.h"
 
 #include <gnomon/gnomon_problems.h>
 #include <string.h>
@@ -31,11 +32,8 @@ typedef struct search {
     gno_problem_fn found;
     void *user;
     size_t counts[GNO_PROBLEM_KINDS];
-    gnoi_poly *polys; /* of gnoi_measure_scene, as kinds */
     unsigned char *kinds, *marks;
     uint32_t *place;   /* of each vertex: the first vertex at its position */
-    uint32_t *table;   /* vertices by hash of position */
-    size_t table_size; /* a power of two */
     edge_sum *sums;
     uint32_t *parent, *group_flips, *group_size; /* of each polygon; the latter two at roots */
     unsigned char *parity;                        /* 1: wound against its parent */
@@ -64,52 +62,12 @@ static uint64_t scramble(uint64_t x)
     return x ^ x >> 31;
 }
 
-/* ---- vertices ------------------------------------------------------------------------------------------------------ */
-
-static size_t slot_of(const double p[3])
-{
-    uint64_t hash = 0;
-    for (int k = 0; k < 3; k++) {
-        double x = p[k] + 0.0; /* minus zero is zero */
-        uint64_t bits;
-        memcpy(&bits, &x, sizeof bits);
-        hash = scramble(hash ^ bits) + 0x9e3779b97f4a7c15u;
-    }
-    return (size_t)hash;
-}
-
-static int same_place(const double p[3], const double q[3])
-{
-    return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
-}
-
-static int weld(search *s)
-{
-    const double(*positions)[3] = (const double(*)[3])s->scene->positions;
-    memset(s->table, 0xff, s->table_size * sizeof *s->table);
-    for (size_t v = 0; v < s->scene->vertex_count; v++) {
-        const double *p = positions[v];
-        size_t slot = slot_of(p) & (s->table_size - 1);
-        while (s->table[slot] != GNOI_NONE && !same_place(positions[s->table[slot]], p)) {
-            slot = (slot + 1) & (s->table_size - 1);
-        }
-        if (s->table[slot] == GNOI_NONE) {
-            s->table[slot] = (uint32_t)v;
-        }
-        s->place[v] = s->table[slot];
-        if (gnoi_stopped_at(s->context, v)) {
-            return 0;
-        }
-    }
-    return 1;
-}
-
 /* ---- polygons that are wrong by themselves ---------------------------------------------------------------------------- */
 
 static int report_kind(search *s, gnoi_kind kind, gno_problem_kind as)
 {
     for (size_t p = 0; p < s->scene->polygon_count; p++) {
-        if ((s->kinds[p] == kind && !report(s, as, p, -1, -1, -1)) || gnoi_stopped_at(s->context, p)) {
+        if (((s->kinds[p] & GNOI_KIND_MASK) == kind && !report(s, as, p, -1, -1, -1)) || gnoi_stopped_at(s->context, p)) {
             return 0;
         }
     }
@@ -378,10 +336,6 @@ static int allocate(search *s)
     const gno_scene *scene = s->scene;
     gno_context *context = s->context;
     s->key_room = scene->corner_count > scene->polygon_count ? scene->corner_count : scene->polygon_count;
-    for (s->table_size = 16; s->table_size / 2 < scene->vertex_count;) {
-        s->table_size *= 2;
-    }
-    s->polys = gnoi_malloc(context, scene->polygon_count, sizeof *s->polys);
     s->kinds = gnoi_malloc(context, scene->polygon_count, 1);
     s->marks = gnoi_calloc(context, scene->polygon_count, 1);
     s->parity = gnoi_calloc(context, scene->polygon_count, 1);
@@ -390,11 +344,10 @@ static int allocate(search *s)
     s->group_flips = gnoi_calloc(context, scene->polygon_count, sizeof *s->group_flips);
     s->sums = gnoi_malloc(context, scene->polygon_count, sizeof *s->sums);
     s->place = gnoi_malloc(context, scene->vertex_count, sizeof *s->place);
-    s->table = gnoi_malloc(context, s->table_size, sizeof *s->table);
     s->edges = gnoi_malloc(context, scene->corner_count, sizeof *s->edges);
     s->keys = gnoi_malloc(context, s->key_room, sizeof *s->keys);
     s->scratch = gnoi_malloc(context, s->key_room, sizeof *s->scratch);
-    return s->polys && s->kinds && s->marks && s->parity && s->parent && s->group_size && s->group_flips && s->sums && s->place && s->table &&
+    return s->kinds && s->marks && s->parity && s->parent && s->group_size && s->group_flips && s->sums && s->place &&
            s->edges && s->keys && s->scratch;
 }
 
@@ -402,7 +355,6 @@ static void release(search *s)
 {
     const gno_scene *scene = s->scene;
     gno_context *context = s->context;
-    gnoi_free(context, s->polys, scene->polygon_count, sizeof *s->polys);
     gnoi_free(context, s->kinds, scene->polygon_count, 1);
     gnoi_free(context, s->marks, scene->polygon_count, 1);
     gnoi_free(context, s->parity, scene->polygon_count, 1);
@@ -411,7 +363,6 @@ static void release(search *s)
     gnoi_free(context, s->group_flips, scene->polygon_count, sizeof *s->group_flips);
     gnoi_free(context, s->sums, scene->polygon_count, sizeof *s->sums);
     gnoi_free(context, s->place, scene->vertex_count, sizeof *s->place);
-    gnoi_free(context, s->table, s->table_size, sizeof *s->table);
     gnoi_free(context, s->edges, scene->corner_count, sizeof *s->edges);
     gnoi_free(context, s->keys, s->key_room, sizeof *s->keys);
     gnoi_free(context, s->scratch, s->key_room, sizeof *s->scratch);
@@ -420,7 +371,7 @@ static void release(search *s)
 static int find_all(search *s)
 {
     mark_details(s);
-    return report_kind(s, GNOI_EMPTY, GNO_PROBLEM_DEGENERATE) && report_kind(s, GNOI_SPLIT, GNO_PROBLEM_NON_PLANAR) && weld(s) &&
+    return report_kind(s, GNOI_EMPTY, GNO_PROBLEM_DEGENERATE) && report_kind(s, GNOI_SPLIT, GNO_PROBLEM_NON_PLANAR) &&
            sum_all(s) && find_duplicates(s) && sort_edges(s) && tie_all(s) && find_flipped(s) &&
            report_edges(s, GNO_PROBLEM_OPEN_EDGE) && report_edges(s, GNO_PROBLEM_CROWDED_EDGE);
 }
@@ -441,7 +392,9 @@ gno_status gno_scene_find_problems(gno_scene *scene, int threads, gno_problem_fn
     if (!allocate(&s)) {
         status = gnoi_fail(s.context, GNO_ERROR_MEMORY, "gno_scene_find_problems: out of memory");
     } else {
-        status = gnoi_measure_scene(scene, threads, s.polys, s.kinds, &measures);
+        status = gnoi_measure_scene(scene, threads, s.kinds, &measures);
+        if (status == GNO_OK)
+            status = gnoi_weld(s.context, threads, scene->vertex_count, (const double(*)[3])scene->positions, s.place);
         if (status == GNO_OK && !find_all(&s)) {
             status = gnoi_fail(s.context, GNO_ERROR_CANCELLED, "gno_scene_find_problems: stopped by the caller");
         }

@@ -55,6 +55,7 @@ typedef struct gnoi_poly {
 } gnoi_poly;
 
 #define GNOI_NONE 0xffffffffu
+#define GNOI_CHUNK 8192 /* polygons a piece of work: some 0.3 ms */
 
 /* What is known of polygons that hang together by their vertices. `closed`: they are opaque, seen from both sides, without holes, and every edge is passed as often one way
  * as the other, so that a path that begins and ends outside crosses as many polygons inwards as outwards. */
@@ -74,9 +75,14 @@ typedef struct gnoi_prepared {
     size_t ring_count, ring_capacity;
     uint32_t *ring_corner; /* ring_count+1 offsets into corner arrays; ring_capacity counts its elements */
     size_t corner_count, corner_capacity;
-    uint32_t *corner_vertex;    /* index into positions */
+    uint32_t *corner_vertex;    /* index into positions; has room for corner_vertex_capacity corners, those of caps too */
+    size_t corner_vertex_capacity;
     size_t vertex_count, vertex_capacity;
     double (*positions)[3];     /* the scene's, those that corners use, each once, in the order of first use */
+    size_t chunk_count;         /* runs of GNOI_CHUNK polygons */
+    uint32_t *chunk_vertex;     /* vertices before each: numbers from chunk_vertex[k] to chunk_vertex[k + 1] are first used in chunk k */
+    size_t seam_count, seam_capacity;
+    uint32_t *seams;            /* polygons that share a vertex with one of an earlier chunk, by rising number */
     size_t solid_count;
     gnoi_solid *solids;         /* connected parts */
     uint32_t *vertex_solid;     /* the part that a vertex belongs to */

@@ -1,119 +1,154 @@
-/* weld.c -- tells the points of an object apart by exact position.
+/* weld.c -- tells vertices apart by exact position.
  *
- * Place in the data flow: prepared polygons -> here -> normals.c. Files repeat a vertex along seams of texture and of normals;
- * averaging must see one point there.
- * Invariants: classes are numbered in the order of corners, so they are the same on every run; the table is never more
- * than half full, so that every search ends.
- * Source: open addressing with linear steps; the mixing constants are those of MurmurHash3's finalizer.
+ * Place in the data flow: see weld.h. Files repeat a vertex along seams of texture and of normals; edges and averages must see one
+ * point there.
+ *   positions -> a hash of each -> vertices by the hash's upper bits, in their order -> a small table for each of these buckets
+ * Invariants: all vertices of one place are in one bucket, by rising number, so the first one found there is the first of all; a table
+ * is never more than half full, so that every search ends; positions are looked at only where hashes agree.
+ * Source: partitioned hash join (Shatdal, Kant and Naughton 1994); the mixing constants are those of MurmurHash3's finalizer.
  */
 #include "scene/weld.h"
-#include "scene/prepare.h"
+#include "base/parallel.h"
+#include "base/sort.h"
 
 #include <string.h>
 
-static uint64_t hash_position(const double p[3])
+#define PIECE 16384        /* vertices */
+#define BUCKET 256         /* vertices in a bucket, about */
+#define MOST_BUCKET_BITS 11
+#define SMALL_TABLE 2048   /* slots that need no memory from the context */
+
+typedef struct welding {
+    gno_context *context;
+    size_t count, pieces, buckets;
+    unsigned shift; /* of a hash: its bucket */
+    const double (*positions)[3];
+    uint32_t *same;   /* hashes at first */
+    gnoi_keyed *list; /* hash and vertex, by bucket */
+    uint32_t *place;  /* of each piece and bucket: how many; then where the next one goes */
+    uint32_t *start;  /* of each bucket, and one more */
+} welding;
+
+static uint32_t hash_position(const double p[3])
 {
     uint64_t hash = 0x9e3779b97f4a7c15u, bits;
-    int i;
-    for (i = 0; i < 3; i++) {
+    for (int i = 0; i < 3; i++) {
         double x = p[i] + 0.0; /* the negative zero becomes the positive one */
         memcpy(&bits, &x, sizeof bits);
         hash = (hash ^ bits) * 0xff51afd7ed558ccdu;
         hash ^= hash >> 32;
     }
-    return hash;
+    return (uint32_t)(hash * 0xc4ceb9fe1a85ec53u >> 32);
 }
 
-/* The class at a vertex's place; a new one if `make`, else GNOI_WELD_NOWHERE where there is none. */
-static uint32_t find_class(gnoi_weld *w, const double (*positions)[3], uint32_t vertex, int make)
+static size_t piece_end(const welding *w, size_t piece) { return (piece + 1) * PIECE < w->count ? (piece + 1) * PIECE : w->count; }
+
+static gno_status hash_piece(void *user, int worker, size_t piece)
 {
-    const double *p = positions[vertex];
-    size_t slot = (size_t)hash_position(p) & (w->table_size - 1);
-    while (w->table[slot] != GNOI_NONE) {
-        const double *q = positions[w->table[slot]];
-        if (p[0] == q[0] && p[1] == q[1] && p[2] == q[2]) {
-            return gnoi_weld_class(w, w->table[slot]);
-        }
-        slot = (slot + 1) & (w->table_size - 1);
+    const welding *w = user;
+    uint32_t *place = w->place + piece * w->buckets;
+    (void)worker;
+    memset(place, 0, w->buckets * sizeof *place);
+    for (size_t v = piece * PIECE, end = piece_end(w, piece); v < end; v++) {
+        w->same[v] = hash_position(w->positions[v]);
+        place[w->same[v] >> w->shift]++;
     }
-    if (!make) {
-        return GNOI_WELD_NOWHERE;
-    }
-    w->table[slot] = vertex;
-    return w->count++;
+    return GNO_OK;
 }
 
-static void set_range(const gnoi_prepared *prepared, size_t first, size_t last, gnoi_weld *w)
+static void set_places(const welding *w)
 {
-    uint32_t low = GNOI_NONE, high = 0;
-    size_t i, k;
-    for (i = first; i < last; i++) {
-        const gnoi_poly *poly = &prepared->polys[i];
-        for (k = 0; gnoi_is_smooth(poly) && k < poly->corner_count; k++) {
-            uint32_t v = prepared->corner_vertex[poly->corner + k];
-            low = v < low ? v : low;
-            high = v > high ? v : high;
+    uint32_t sum = 0;
+    for (size_t b = 0; b < w->buckets; b++) {
+        w->start[b] = sum;
+        for (size_t k = 0; k < w->pieces; k++) {
+            uint32_t n = w->place[k * w->buckets + b];
+            w->place[k * w->buckets + b] = sum;
+            sum += n;
         }
     }
-    w->low = low;
-    w->span = (size_t)(high - low) + 1;
+    w->start[w->buckets] = sum;
 }
 
-/* First the places of open corners get classes, then the other corners there find them. 0 when stopped. */
-static int set_classes(const gno_scene *scene, size_t first, size_t last, int make, gnoi_weld *w)
+static gno_status scatter_piece(void *user, int worker, size_t piece)
 {
-    const double(*positions)[3] = (const double(*)[3])scene->positions;
-    const gnoi_prepared *prepared = &scene->prepared;
-    size_t i, k;
-    for (i = first; i < last; i++) {
-        const gnoi_poly *poly = &prepared->polys[i];
-        for (k = 0; gnoi_is_smooth(poly) && k < poly->corner_count; k++) {
-            uint32_t v = prepared->corner_vertex[poly->corner + k];
-            if ((!make || prepared->corner_normal[poly->corner + k] == GNOI_NONE) && gnoi_weld_class(w, v) == GNOI_NONE) {
-                w->class_of[v - w->low] = find_class(w, positions, v, make);
-            }
+    const welding *w = user;
+    uint32_t *place = w->place + piece * w->buckets;
+    (void)worker;
+    for (size_t v = piece * PIECE, end = piece_end(w, piece); v < end; v++) {
+        gnoi_keyed *entry = &w->list[place[w->same[v] >> w->shift]++];
+        entry->key = w->same[v];
+        entry->value = (uint32_t)v;
+    }
+    return GNO_OK;
+}
+
+/* table: `mask` + 1 slots, all 0; a slot holds one more than a number in the list. */
+static void weld_list(const welding *w, const gnoi_keyed *list, uint32_t count, uint32_t *table, uint32_t mask)
+{
+    for (uint32_t i = 0; i < count; i++) {
+        const double *p = w->positions[list[i].value];
+        uint32_t slot = list[i].key & mask;
+        while (table[slot]) {
+            const gnoi_keyed *other = &list[table[slot] - 1];
+            const double *q = w->positions[other->value];
+            if (other->key == list[i].key && p[0] == q[0] && p[1] == q[1] && p[2] == q[2])
+                break;
+            slot = (slot + 1) & mask;
         }
-        if (gnoi_stopped_at(scene->context, i)) {
-            return 0;
-        }
+        if (!table[slot])
+            table[slot] = i + 1;
+        w->same[list[i].value] = list[table[slot] - 1].value;
     }
-    return 1;
 }
 
-static size_t count_open(const gnoi_prepared *prepared, size_t first, size_t last)
+static gno_status weld_bucket(void *user, int worker, size_t bucket)
 {
-    size_t i, k, open = 0;
-    for (i = first; i < last; i++) {
-        const gnoi_poly *poly = &prepared->polys[i];
-        for (k = 0; gnoi_is_smooth(poly) && k < poly->corner_count; k++) {
-            open += prepared->corner_normal[poly->corner + k] == GNOI_NONE;
-        }
-    }
-    return open;
+    const welding *w = user;
+    const uint32_t count = w->start[bucket + 1] - w->start[bucket];
+    uint32_t small[SMALL_TABLE], *table = small;
+    size_t slots = 16;
+    (void)worker;
+    while (slots < 2 * (size_t)count)
+        slots *= 2;
+    if (slots > SMALL_TABLE)
+        table = gnoi_malloc(w->context, slots, sizeof *table);
+    if (!table)
+        return GNO_ERROR_MEMORY;
+    memset(table, 0, slots * sizeof *table);
+    weld_list(w, w->list + w->start[bucket], count, table, (uint32_t)(slots - 1));
+    if (table != small)
+        gnoi_free(w->context, table, slots, sizeof *table);
+    return GNO_OK;
 }
 
-int gnoi_weld_make(const gno_scene *scene, size_t first, size_t last, gnoi_weld *weld)
+static gno_status weld(welding *w, int threads)
 {
-    size_t open;
-    set_range(&scene->prepared, first, last, weld);
-    weld->count = 0;
-    weld->table_size = 16;
-    open = count_open(&scene->prepared, first, last);
-    while (weld->table_size < 2 * (open < weld->span ? open : weld->span)) {
-        weld->table_size *= 2;
-    }
-    weld->class_of = gnoi_malloc(scene->context, weld->span, sizeof *weld->class_of);
-    weld->table = gnoi_malloc(scene->context, weld->table_size, sizeof *weld->table);
-    if (!weld->class_of || !weld->table) {
-        return 0;
-    }
-    memset(weld->class_of, 0xff, weld->span * sizeof *weld->class_of); /* GNOI_NONE everywhere */
-    memset(weld->table, 0xff, weld->table_size * sizeof *weld->table);
-    return set_classes(scene, first, last, 1, weld) && set_classes(scene, first, last, 0, weld);
+    gno_status status;
+    if (!w->list || !w->place || !w->start)
+        return gnoi_fail(w->context, GNO_ERROR_MEMORY, "prepare: out of memory");
+    status = gnoi_parallel(w->context, threads, w->pieces, "prepare", hash_piece, w);
+    if (status)
+        return status;
+    set_places(w);
+    status = gnoi_parallel(w->context, threads, w->pieces, "prepare", scatter_piece, w);
+    return status ? status : gnoi_parallel(w->context, threads, w->buckets, "prepare", weld_bucket, w);
 }
 
-void gnoi_weld_free(gno_context *context, gnoi_weld *weld)
+gno_status gnoi_weld(gno_context *context, int threads, size_t count, const double (*positions)[3], uint32_t *same)
 {
-    gnoi_free(context, weld->class_of, weld->span, sizeof *weld->class_of);
-    gnoi_free(context, weld->table, weld->table_size, sizeof *weld->table);
+    welding w = {context, count, (count + PIECE - 1) / PIECE, 2, 31, positions, same, NULL, NULL, NULL};
+    gno_status status;
+    while (w.buckets < count / BUCKET && 32 - w.shift < MOST_BUCKET_BITS) {
+        w.buckets *= 2;
+        w.shift--;
+    }
+    w.list = gnoi_malloc(context, count, sizeof *w.list);
+    w.place = gnoi_malloc(context, w.pieces * w.buckets, sizeof *w.place);
+    w.start = gnoi_malloc(context, w.buckets + 1, sizeof *w.start);
+    status = weld(&w, threads);
+    gnoi_free(context, w.list, count, sizeof *w.list);
+    gnoi_free(context, w.place, w.pieces * w.buckets, sizeof *w.place);
+    gnoi_free(context, w.start, w.buckets + 1, sizeof *w.start);
+    return status;
 }
