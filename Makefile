@@ -246,7 +246,7 @@ coverage-run: all tests
 	 status=$$?; sh tests/coverage.sh $(BUILD) && exit $$status
 
 # The programs that work on several threads, under the thread sanitizer.
-TSAN_TESTS := $(addprefix $(BUILD)/tests/,unit/test_embedding unit/test_stream unit/test_layers property/test_determinism)
+TSAN_TESTS := $(addprefix $(BUILD)/tests/,unit/test_embedding unit/test_stream unit/test_layers unit/test_threads property/test_determinism)
 
 check-tsan:
 	+@$(SUBMAKE) $(JOBS) BUILD=build/tsan CFLAGS='-O1 -g -fno-omit-frame-pointer' SANITIZE='-fsanitize=thread' tsan-run

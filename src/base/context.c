@@ -76,35 +76,39 @@ static void raise_peak(gno_context *context, size_t used)
     }
 }
 
-/* Enters a change of size before it is made, so that threads together cannot pass the ceiling; 0 when it would. */
-static int account(gno_context *context, size_t old_size, size_t new_size)
+/* Enters a change of size before it is made, so that threads together never pass the ceiling; *after is what is used then. 0, and
+ * nothing entered, when it would. */
+static int account(gno_context *context, size_t old_size, size_t new_size, size_t *after)
 {
-    /* Unsigned wrap-around makes one addition serve growth and shrinking alike. */
-    size_t change = new_size - old_size;
-    size_t used = atomic_fetch_add_explicit(&context->used, change, memory_order_relaxed) + change;
+    size_t ceiling = context->def.max_memory > 0 ? context->def.max_memory : SIZE_MAX, growth = new_size - old_size;
+    size_t used = atomic_load_explicit(&context->used, memory_order_relaxed);
     if (new_size <= old_size) {
+        *after = atomic_fetch_sub_explicit(&context->used, old_size - new_size, memory_order_relaxed) - (old_size - new_size);
         return 1;
     }
-    if (context->def.max_memory > 0 && (used > context->def.max_memory || used < change)) {
-        atomic_fetch_sub_explicit(&context->used, change, memory_order_relaxed);
-        atomic_store_explicit(&context->refused, 1, memory_order_relaxed);
-        return 0;
-    }
+    do {
+        if (used > ceiling || growth > ceiling - used) {
+            atomic_store_explicit(&context->refused, 1, memory_order_relaxed);
+            return 0;
+        }
+        *after = used + growth;
+    } while (!atomic_compare_exchange_weak_explicit(&context->used, &used, *after, memory_order_relaxed, memory_order_relaxed));
     return 1;
 }
 
 void *gnoi_realloc(gno_context *context, void *block, size_t old_count, size_t count, size_t size)
 {
     size_t old_size = block ? old_count * size : 0; /* the block exists, so this product did not overflow */
+    size_t after;
     void *fresh;
     if (count == 0) {
         if (block) {
             context->def.alloc(context->def.alloc_user, block, old_size, 0);
-            account(context, old_size, 0);
+            account(context, old_size, 0, &after);
         }
         return NULL;
     }
-    if (size == 0 || count > (size_t)PTRDIFF_MAX / size || !account(context, old_size, count * size)) {
+    if (size == 0 || count > (size_t)PTRDIFF_MAX / size || !account(context, old_size, count * size, &after)) {
         return NULL;
     }
     fresh = context->def.alloc(context->def.alloc_user, block, old_size, count * size);
@@ -112,7 +116,7 @@ void *gnoi_realloc(gno_context *context, void *block, size_t old_count, size_t c
         atomic_fetch_sub_explicit(&context->used, count * size - old_size, memory_order_relaxed);
         atomic_store_explicit(&context->refused, 0, memory_order_relaxed);
     } else if (count * size > old_size) {
-        raise_peak(context, atomic_load_explicit(&context->used, memory_order_relaxed));
+        raise_peak(context, after);
     }
     return fresh;
 }

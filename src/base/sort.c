@@ -38,20 +38,32 @@ static int scatter_digit(const gnoi_keyed *from, gnoi_keyed *to, size_t count, u
     return 1;
 }
 
-void gnoi_sort(gnoi_keyed *pairs, gnoi_keyed *scratch, size_t count)
+/* context NULL: nobody is asked. */
+static int sort(gno_context *context, gnoi_keyed *pairs, gnoi_keyed *scratch, size_t count)
 {
     gnoi_keyed *from = pairs, *to = scratch;
     unsigned bits = count < 4096 ? 8 : DIGIT_BITS;
     if (count < SHORT_LIST) {
         insertion_sort(pairs, count);
-        return;
+        return 1;
     }
-    for (unsigned shift = 0; shift < 32; shift += bits)
+    for (unsigned shift = 0; shift < 32; shift += bits) {
+        if (context && gnoi_stopped(context))
+            return 0;
         if (scatter_digit(from, to, count, shift, shift + bits > 32 ? 32 - shift : bits)) {
             gnoi_keyed *swap = from;
             from = to;
             to = swap;
         }
+    }
     if (from != pairs)
         memcpy(pairs, from, count * sizeof *pairs);
+    return 1;
+}
+
+void gnoi_sort(gnoi_keyed *pairs, gnoi_keyed *scratch, size_t count) { (void)sort(NULL, pairs, scratch, count); }
+
+int gnoi_sort_asking(gno_context *context, gnoi_keyed *pairs, gnoi_keyed *scratch, size_t count)
+{
+    return sort(context, pairs, scratch, count);
 }

@@ -12,10 +12,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum option_id { SET, THREADS, JSON, QUIET, HELP };
+enum option_id { SET, MEMORY, THREADS, JSON, QUIET, HELP };
 
 static const option options[] = {
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, as in gnomon render"},
+    [MEMORY] = {"memory", 0, "SIZE", MEMORY_HELP},
     [THREADS] = {"threads", 0, "N", "0, the default: one per processor"},
     [JSON] = {"json", 0, NULL, "one JSON object instead of the table"},
     [QUIET] = {"quiet", 'q', NULL, "no progress bar"},
@@ -28,6 +29,7 @@ typedef struct job {
     const char *scene_path;
     gno_setting *settings;
     size_t setting_count;
+    size_t memory; /* ceiling, 0: none */
     int threads, json, quiet;
 } job;
 
@@ -57,6 +59,8 @@ static int take_option(void *job_of, int id, char *value)
         return parse_int(value, 0, GNO_MAX_THREADS, &work->threads)
                    ? -1
                    : usage("info", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
+    case MEMORY:
+        return take_memory("info", value, &work->memory);
     case JSON:
         work->json = 1;
         return -1;
@@ -74,19 +78,19 @@ static int read_arguments(job *work, int argc, char **argv)
     return options_read(&reader, take_option, work, &work->scene_path);
 }
 
-/* Stops the search when memory is short; `room` without items tells so. */
+/* Stops the search when memory is short; `full` tells so. */
 static int keep_problem(void *user, const gno_problem *problem)
 {
     found_list *list = user;
     if (list->count == list->room) {
-        list->room = list->room * 2 + 64;
-        gno_problem *grown = realloc(list->items, list->room * sizeof *grown);
+        const size_t room = list->room * 2 + 64;
+        gno_problem *grown = gno_context_realloc(list->context, list->items, list->room * sizeof *grown, room * sizeof *grown);
         if (grown == NULL) {
-            free(list->items);
-            list->items = NULL;
+            list->full = 1;
             return 1;
         }
         list->items = grown;
+        list->room = room;
     }
     list->items[list->count++] = *problem;
     return 0;
@@ -95,11 +99,12 @@ static int keep_problem(void *user, const gno_problem *problem)
 static gno_status gather(const job *work, gno_scene *scene, summary *found)
 {
     gno_status status = gno_scene_prepare(scene, work->threads, &found->problems);
+    found->list.context = gno_scene_context(scene);
     if (status == GNO_OK) {
         status = gno_scene_find_problems(scene, work->threads, keep_problem, &found->list, found->problem_counts);
     }
-    if (found->list.items == NULL && found->list.room > 0) {
-        return gno_context_fail(gno_scene_context(scene), GNO_ERROR_MEMORY, "out of memory");
+    if (found->list.full) {
+        return gno_context_fail(gno_scene_context(scene), GNO_ERROR_MEMORY, "out of memory for the list of problems");
     }
     if (status != GNO_OK) {
         return status;
@@ -159,6 +164,7 @@ static int run_job(const job *work)
     memset(&found, 0, sizeof found);
     def.log = keep_warning;
     def.log_user = &found;
+    def.max_memory = work->memory;
     if (gno_context_create(&def, &context) != GNO_OK) {
         say("out of memory");
         return EXIT_FAILED;
@@ -185,7 +191,7 @@ static int run_job(const job *work)
     }
     free(found.warnings);
     free(found.material_polygons);
-    free(found.list.items);
+    gno_context_realloc(context, found.list.items, found.list.room * sizeof *found.list.items, 0);
     gno_scene_destroy(scene);
     gno_context_destroy(context);
     return exit_status;

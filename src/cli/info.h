@@ -9,6 +9,8 @@
 typedef struct found_list {
     gno_problem *items; /* in the order of kinds */
     size_t count, room;
+    gno_context *context; /* holds them, so that they count for --memory */
+    int full;             /* memory was short */
 } found_list;
 
 typedef struct summary {

@@ -9,13 +9,14 @@
 #include "cli/outputs.h"
 #include "cli/progress.h"
 
+#include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 #include <unistd.h>
 
-enum option_id { OUTPUT, PIECES, LIGHT, THREADS, NO_CERTIFICATE, SET, STATS, QUIET, HELP };
+enum option_id { OUTPUT, PIECES, LIGHT, THREADS, NO_CERTIFICATE, SET, MEMORY, STATS, QUIET, HELP };
 
 static const option options[] = {
     [OUTPUT] = {"output", 'o', "FILE", "the table, .csv; \"-\" or no -o at all: standard output"},
@@ -24,6 +25,7 @@ static const option options[] = {
     [THREADS] = {"threads", 0, "N", "0, the default: one per processor; the results are the same"},
     [NO_CERTIFICATE] = {"no-certificate", 0, NULL, "leave out the run's proof, which takes about half the time"},
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. lights[0].direction=[1,0,-2]; may be\ngiven several times"},
+    [MEMORY] = {"memory", 0, "SIZE", MEMORY_HELP},
     [STATS] = {"stats", 0, "FILE", "the summary as one JSON object; \"-\" is standard output"},
     [QUIET] = {"quiet", 'q', NULL, "no progress bar, no warnings, no summary"},
     [HELP] = {"help", 'h', NULL, "this text"},
@@ -40,6 +42,7 @@ typedef struct job {
     gno_setting *settings;
     size_t setting_count;
     gno_lit_def def;
+    size_t memory; /* ceiling, 0: none */
     int quiet;
 } job;
 
@@ -101,6 +104,8 @@ static int take_option(void *job_of, int id, char *value)
         return -1;
     case SET:
         return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("lit", "--set %s: not KEY=VALUE", value);
+    case MEMORY:
+        return take_memory("lit", value, &work->memory);
     case STATS:
         work->stats_path = value;
         return -1;
@@ -185,8 +190,15 @@ static int know_lights(const job *work, const gno_scene *scene)
     return known;
 }
 
+/* Bytes of one light's rows; through the context, so that they count for --memory. */
+static size_t rows_size(const gno_scene *scene)
+{
+    return (gno_scene_count(scene).polygons + 1) * sizeof(gno_lit_row);
+}
+
 static gno_status light_scene(const job *work, lit_run *run)
 {
+    gno_context *context = gno_scene_context(run->scene);
     const size_t lights = gno_expanded_light_count(run->scene), polygons = gno_scene_count(run->scene).polygons;
     gno_status status = GNO_OK;
     for (size_t i = 0; i < lights && status == GNO_OK; i++) {
@@ -202,9 +214,9 @@ static gno_status light_scene(const job *work, lit_run *run)
         if (status != GNO_OK || !wanted(work, name)) {
             continue;
         }
-        gno_lit_row *rows = calloc(polygons + 1, sizeof *rows);
+        gno_lit_row *rows = polygons < SIZE_MAX / sizeof *rows ? gno_context_realloc(context, NULL, 0, rows_size(run->scene)) : NULL;
         if (rows == NULL) {
-            return gno_context_fail(gno_scene_context(run->scene), GNO_ERROR_MEMORY, "out of memory for the table");
+            return gno_context_fail(context, GNO_ERROR_MEMORY, "out of memory for the table");
         }
         status = gno_lit_pieces(run->scene, i, &work->def, work->piece_files > 0 ? &pieces : NULL, rows, &run->summaries[run->count]);
         result->light = i;
@@ -215,19 +227,35 @@ static gno_status light_scene(const job *work, lit_run *run)
     return status;
 }
 
-static gno_status write_files(const job *work, const lit_run *run)
+/* piece: which file of pieces, -1 for the table. A signal ends the program at once while it writes to a stream: see render.c. */
+static gno_status write_file(const job *work, const lit_run *run, int piece)
 {
-    gno_status status = gno_lit_table_write(run->scene, work->table_path, run->results, run->count);
-    for (int i = 0; i < work->piece_files && status == GNO_OK; i++) {
-        status = gno_pieces_write(run->scene, work->piece_paths[i], run->results, run->count);
+    const char *path = piece < 0 ? work->table_path : work->piece_paths[piece];
+    const int stream = output_is_stream(path);
+    if (stream) {
+        interrupt_release();
+    }
+    const gno_status status = piece < 0 ? gno_lit_table_write(run->scene, path, run->results, run->count)
+                                        : gno_pieces_write(run->scene, path, run->results, run->count);
+    if (stream && status == GNO_OK) {
+        interrupt_catch();
     }
     return status;
+}
+
+static gno_status write_files(const job *work, const lit_run *run)
+{
+    gno_status status = GNO_OK;
+    for (int i = -1; i < work->piece_files && status == GNO_OK; i++) {
+        status = write_file(work, run, i);
+    }
+    return status == GNO_OK && interrupt_signal() != 0 ? gno_context_fail(gno_scene_context(run->scene), GNO_ERROR_CANCELLED, "interrupted") : status;
 }
 
 static void free_results(lit_run *run)
 {
     for (size_t i = 0; i < run->count; i++) {
-        free((void *)run->results[i].rows);
+        gno_context_realloc(gno_scene_context(run->scene), (void *)run->results[i].rows, rows_size(run->scene), 0);
         gno_pieces_destroy((gno_pieces *)run->results[i].pieces);
     }
     free(run->results);
@@ -251,9 +279,6 @@ static int run_scene(const job *work, gno_context *context, lit_run *run, progre
     status = light_scene(work, run);
     progress_clear(shown);
     const double written_from = seconds_now();
-    if (status == GNO_OK && strcmp(work->table_path, "-") == 0) {
-        interrupt_release(); /* a reader that does not read shall not hold the program up */
-    }
     if (status == GNO_OK) {
         status = write_files(work, run);
     }
@@ -274,7 +299,7 @@ static int run_job(const job *work)
 {
     progress shown = progress_make(work->quiet);
     const double begun = seconds_now();
-    const gno_context_def def = progress_context_def(&shown);
+    gno_context_def def = progress_context_def(&shown);
     const long processors = sysconf(_SC_NPROCESSORS_ONLN);
     gno_context *context = NULL;
     lit_run run;
@@ -283,6 +308,7 @@ static int run_job(const job *work)
     run.scene_path = work->scene_path;
     run.certified = work->def.certify;
     run.threads = work->def.threads > 0 ? work->def.threads : processors < 1 ? 1 : processors > GNO_MAX_THREADS ? GNO_MAX_THREADS : (int)processors;
+    def.max_memory = work->memory;
     if (gno_context_create(&def, &context) != GNO_OK) {
         say("out of memory");
         return EXIT_FAILED;

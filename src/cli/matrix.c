@@ -14,7 +14,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum option_id { OUTPUT, LIGHT, THREADS, CHECK, SET, STATS, QUIET, HELP };
+enum option_id { OUTPUT, LIGHT, THREADS, CHECK, SET, MEMORY, STATS, QUIET, HELP };
 
 static const option options[] = {
     [OUTPUT] = {"output", 'o', "FILE", "by extension: .mtx (Matrix Market, pattern), .csv, .png (picture);\n"
@@ -25,6 +25,7 @@ static const option options[] = {
     [CHECK] = {"check", 0, NULL, "count the ones that cast no shadow at all, for --stats (done for\n"
                                  "small scenes in any case)"},
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, as in gnomon render"},
+    [MEMORY] = {"memory", 0, "SIZE", MEMORY_HELP},
     [STATS] = {"stats", 0, "FILE", "one JSON object for each light: seconds, counts, share of false\n"
                                    "ones, memory; \"-\" is standard output"},
     [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
@@ -40,6 +41,7 @@ typedef struct job {
     const char *scene_path, *output, *light, *stats_path;
     gno_setting *settings;
     size_t setting_count;
+    size_t memory; /* ceiling, 0: none */
     int threads, check, quiet;
     int each; /* the output's name has %s */
 } job;
@@ -107,6 +109,8 @@ static int take_option(void *job_of, int id, char *value)
         return -1;
     case SET:
         return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("matrix", "--set %s: not KEY=VALUE", value);
+    case MEMORY:
+        return take_memory("matrix", value, &work->memory);
     case STATS:
         work->stats_path = value;
         return -1;
@@ -266,10 +270,11 @@ static int run_job(const job *work)
 {
     progress shown = progress_make(work->quiet);
     const double begun = seconds_now();
-    const gno_context_def def = progress_context_def(&shown);
+    gno_context_def def = progress_context_def(&shown);
     gno_context *context = NULL;
     gno_scene *scene = NULL;
     int status = EXIT_FAILED;
+    def.max_memory = work->memory;
     if (gno_context_create(&def, &context) != GNO_OK) {
         say("out of memory");
         return EXIT_FAILED;

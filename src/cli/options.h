@@ -53,6 +53,14 @@ int parse_size(const char *text, int *width, int *height);
 /* Bytes: a number with K, M, G or T behind it for powers of 1024 ("512M", "1.5G", "64MiB"); at least 1. */
 int parse_bytes(const char *text, size_t *value);
 
+/* The words for --memory in every command's help. */
+#define MEMORY_HELP                                                          \
+    "stop with a message before more than SIZE bytes are held, e.g. 512M\n" \
+    "or 2G (what the file libraries take for themselves is not counted)"
+
+/* The argument of --memory; returns -1, or an exit status, its message being out. */
+int take_memory(const char *command_name, const char *text, size_t *value);
+
 /* KEY=VALUE, cut in place at the first equals sign; the setting points into the text. */
 int parse_setting(char *text, gno_setting *setting);
 

@@ -43,8 +43,7 @@ static const option options[] = {
                                 "object and material (6)"},
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. camera.eye=[1,2,3]; may be given\n"
                                     "several times"},
-    [MEMORY] = {"memory", 0, "SIZE", "stop with a message before more than SIZE bytes are held, e.g. 512M\n"
-                                     "or 2G (what the file libraries take for themselves is not counted)"},
+    [MEMORY] = {"memory", 0, "SIZE", MEMORY_HELP},
     [STATS] = {"stats", 0, "FILE", "one JSON object: seconds per stage, counts, peak memory; \"-\" is\n"
                                    "standard output"},
     [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
@@ -158,7 +157,7 @@ static int take_option(void *job_of, int id, char *value)
                    ? -1
                    : usage("render", "--ranks %s: not a number from 1 to %d", value, GNO_MAX_RANKS);
     case MEMORY:
-        return parse_bytes(value, &work->memory) ? -1 : usage("render", "--memory %s: not a number of bytes, as 512M or 2G", value);
+        return take_memory("render", value, &work->memory);
     case SET:
         return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("render", "--set %s: not KEY=VALUE", value);
     case STATS:

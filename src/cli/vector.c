@@ -13,7 +13,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum option_id { OUTPUT, FORMAT, SIZE, EDGES, EDGE_WIDTH, EDGE_COLOUR, CREASE, BACKGROUND, UNDERLAY, DIGITS, TITLE, EXPOSURE, THREADS, SET, QUIET, HELP };
+enum option_id { OUTPUT, FORMAT, SIZE, EDGES, EDGE_WIDTH, EDGE_COLOUR, CREASE, BACKGROUND, UNDERLAY, DIGITS, TITLE, EXPOSURE, THREADS, SET, MEMORY, QUIET, HELP };
 
 static const option options[] = {
     [OUTPUT] = {"output", 'o', "FILE", "drawing, by extension: .svg or .pdf; \"-\" is standard output and needs\n"
@@ -35,6 +35,7 @@ static const option options[] = {
     [THREADS] = {"threads", 0, "N", "0, the default: one per processor; the drawing is the same"},
     [SET] = {"set", 0, "KEY=VALUE", "override a scene value, e.g. camera.eye=[1,2,3]; may be given\n"
                                     "several times"},
+    [MEMORY] = {"memory", 0, "SIZE", MEMORY_HELP},
     [QUIET] = {"quiet", 'q', NULL, "no progress bar and no warnings"},
     [HELP] = {"help", 'h', NULL, "this text"},
 };
@@ -50,6 +51,7 @@ typedef struct job {
     size_t setting_count;
     int width, height; /* 0: the scene's */
     gno_vector_def def;
+    size_t memory; /* ceiling, 0: none */
     int quiet;
 } job;
 
@@ -169,6 +171,8 @@ static int take_option(void *job_of, int id, char *value)
                    : usage("vector", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
     case SET:
         return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("vector", "--set %s: not KEY=VALUE", value);
+    case MEMORY:
+        return take_memory("vector", value, &work->memory);
     case QUIET:
         work->quiet = 1;
         return -1;
@@ -237,13 +241,20 @@ static gno_status load(const job *work, gno_context *context, gno_scene **scene)
     return status;
 }
 
-/* A signal stops the work between its steps; a file that is being written is finished. */
+/* A signal ends the work on a file and leaves nothing behind; on a stream, which leaves nothing either, the program itself: see render.c. */
 static gno_status draw(const job *work, gno_scene *scene)
 {
     gno_status status = GNO_OK;
     interrupt_catch();
     for (int i = 0; i < work->path_count && status == GNO_OK; i++) {
+        const int stream = output_is_stream(work->paths[i]);
+        if (stream) {
+            interrupt_release();
+        }
         status = gno_vector_write(scene, work->paths[i], &work->def);
+        if (stream && status == GNO_OK) {
+            interrupt_catch();
+        }
     }
     if (status == GNO_OK && interrupt_signal() != 0) {
         status = GNO_ERROR_CANCELLED;
@@ -254,10 +265,11 @@ static gno_status draw(const job *work, gno_scene *scene)
 static int run_job(const job *work)
 {
     progress shown = progress_make(work->quiet);
-    const gno_context_def def = progress_context_def(&shown);
+    gno_context_def def = progress_context_def(&shown);
     gno_context *context = NULL;
     gno_scene *scene = NULL;
     int result = EXIT_DONE;
+    def.max_memory = work->memory;
     if (gno_context_create(&def, &context) != GNO_OK) {
         say("out of memory");
         return EXIT_FAILED;

@@ -50,12 +50,18 @@ static int order_segments(gno_clipper *c)
         return 0;
     c->slack = ((int64_t)1 << shift) - 1;
     for (size_t i = 0; i < n; i++) {
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
         c->keys[i].key = (uint32_t)(from[i].a.x >> shift);
         c->keys[i].value = (uint32_t)i;
     }
-    gnoi_sort(c->keys, c->key_scratch, n);
-    for (size_t i = 0; i < n; i++)
+    if (!gnoi_sort_asking(c->context, c->keys, c->key_scratch, n))
+        return 0;
+    for (size_t i = 0; i < n; i++) {
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
         c->ordered[i] = from[c->keys[i].value];
+    }
     c->segments = c->ordered;
     c->ordered = from;
     swap = c->segment_capacity;
@@ -119,13 +125,15 @@ static int64_t border(const lattice *l, int axis, int place)
 static int add_entry(gno_clipper *c, const entries *e, size_t *count, int cell, uint32_t segment)
 {
     size_t at = e->first + 2 * *count;
-    if (at + 2 >= GNOI_CLIP_NONE || !GNOI_CLIP_RESERVE(c, cell_list, cell_capacity, at + 2))
+    if (at + 2 >= GNOI_CLIP_NONE)
+        return gnoi_clip_too_many(c, "segments in cells") == GNO_OK;
+    if (!GNOI_CLIP_RESERVE(c, cell_list, cell_capacity, at + 2))
         return 0;
     c->cell_list[at] = segment;
     c->cell_list[at + 1] = c->cell_list[e->head + (size_t)cell];
     c->cell_list[e->head + (size_t)cell] = (uint32_t)at;
     ++*count;
-    return 1;
+    return !gnoi_clip_stopped_at(c, *count);
 }
 
 /* Rows of s between two columns' borders: from the heights there, with a margin. */
@@ -216,6 +224,8 @@ static int meet_in_lattice(gno_clipper *c, const gnoi_cell *cell, const lattice 
         return gnoi_clip_meet_in_cell(c, cell, c->cell_list + first, count);
     top = e.first + 2 * listed;
     for (size_t i = 0; i < cells; i++) {
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
         const int place[2] = {(int)(i / (size_t)l->size[1]), (int)(i % (size_t)l->size[1])};
         uint32_t head = c->cell_list[e.head + i];
         if (head != GNOI_CLIP_NONE && !meet_in_child(c, l, cell, head, place, top))
@@ -239,12 +249,10 @@ gno_status gnoi_clip_meet(gno_clipper *c)
     whole.high[0] = whole.high[1] = end;
     c->split_count = 0;
     if (!order_segments(c) || !GNOI_CLIP_RESERVE(c, cell_list, cell_capacity, c->segment_count))
-        return gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
     for (size_t i = 0; i < c->segment_count; i++)
         c->cell_list[i] = (uint32_t)i;
     if (meet_in(c, &whole, 0, c->segment_count))
         return GNO_OK;
-    if (c->point_count >= GNOI_CLIP_MOST || c->split_count >= GNOI_CLIP_MOST)
-        return gnoi_clip_too_many(c, "crossings");
-    return gnoi_clip_no_memory(c);
+    return c->complaint[0] ? GNO_ERROR_LIMIT : GNO_ERROR_MEMORY;
 }

@@ -1,7 +1,8 @@
 /* clip.c -- gno_clip: the passes of clipper.h in their order. The first file of this folder to read after it. */
+#include "clip/clip.h"
 #include "clip/clipper.h"
 
-#include <string.h>
+#include <stdio.h>
 
 static const gno_shape empty_shape;
 
@@ -59,9 +60,13 @@ void gno_clipper_destroy(gno_clipper *c)
 
 static gno_status run(gno_clipper *c, gno_clip_op op, const gno_shape *subject, const gno_shape *clip, gno_shape *result)
 {
-    gno_status status = gnoi_clip_import(c, subject, clip);
+    gno_status status;
+    c->complaint[0] = '\0';
+    status = gnoi_clip_import(c, subject, clip);
     if (status != GNO_OK || c->segment_count == 0)
         return status;
+    if (gnoi_clip_stopped(c, c->segment_count))
+        return GNO_ERROR_MEMORY;
     if ((status = gnoi_clip_meet(c)) != GNO_OK || (status = gnoi_clip_vertices(c)) != GNO_OK ||
         (status = gnoi_clip_pieces(c)) != GNO_OK || (status = gnoi_clip_winding(c)) != GNO_OK ||
         (status = gnoi_clip_edges(c)) != GNO_OK || (status = gnoi_clip_sweep(c, op)) != GNO_OK ||
@@ -70,16 +75,35 @@ static gno_status run(gno_clipper *c, gno_clip_op op, const gno_shape *subject, 
     return gnoi_clip_result(c, result);
 }
 
-gno_status gno_clip(gno_clipper *clipper, gno_clip_op op, const gno_shape *subject, const gno_shape *clip, gno_shape *result)
+gno_status gnoi_clip_refuse(gno_clipper *c, gno_status status, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    if (vsnprintf(c->complaint, sizeof c->complaint, format, arguments) < 0)
+        c->complaint[0] = '\0';
+    va_end(arguments);
+    return status;
+}
+
+gno_status gnoi_clip(gno_clipper *clipper, gno_clip_op op, const gno_shape *subject, const gno_shape *clip, gno_shape *result)
 {
     gno_shape made = empty_shape;
+    gno_status status = run(clipper, clip ? op : GNO_CLIP_UNION, subject, clip, &made);
+    *result = status == GNO_OK ? made : empty_shape;
+    return status;
+}
+
+gno_status gno_clip(gno_clipper *clipper, gno_clip_op op, const gno_shape *subject, const gno_shape *clip, gno_shape *result)
+{
     gno_status status;
     if (!clipper || !subject || !result || op < GNO_CLIP_UNION || op > GNO_CLIP_XOR) {
         if (result)
             *result = empty_shape;
         return gnoi_fail(clipper ? clipper->context : NULL, GNO_ERROR_ARGUMENT, "gno_clip: NULL or unknown operation");
     }
-    status = run(clipper, clip ? op : GNO_CLIP_UNION, subject, clip, &made);
-    *result = status == GNO_OK ? made : empty_shape;
-    return status;
+    gnoi_begin(clipper->context, "clipping");
+    status = gnoi_clip(clipper, op, subject, clip, result);
+    if (status == GNO_OK)
+        return status;
+    return gnoi_fail(clipper->context, status, "clipping: %s", status == GNO_ERROR_MEMORY ? "out of memory" : clipper->complaint);
 }

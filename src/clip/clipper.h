@@ -117,6 +117,9 @@ struct gno_clipper {
     gno_context *context;
     int bits; /* GNOI_CLIP_BITS; tests take fewer, so that pixels are large */
 
+    char complaint[120]; /* of the call in hand about an argument or a limit, for the message; or "" */
+    size_t steps;        /* since the last question whether to stop; goes on from call to call */
+
     /* grid: a coordinate is (origin + integer) * cell */
     double cell;
     int64_t origin[2];
@@ -192,7 +195,8 @@ struct gno_clipper {
 #define GNOI_CLIP_RESERVE(clipper, array, capacity, need) \
     gnoi_reserve((clipper)->context, (void **)&(clipper)->array, &(clipper)->capacity, (need), sizeof *(clipper)->array)
 
-/* The passes, in order. Each returns GNO_OK or MEMORY or LIMIT with the context's message set. */
+/* The passes, in order. Each returns GNO_OK, MEMORY (also when the call shall stop: context.h), or LIMIT with the clipper's complaint.
+ * None touches the context's message: worker threads clip too. */
 
 /* grid.c: checks both shapes, chooses the grid, rounds. clip may be NULL. Also ARGUMENT. */
 gno_status gnoi_clip_import(gno_clipper *c, const gno_shape *subject, const gno_shape *clip);
@@ -200,7 +204,7 @@ gno_status gnoi_clip_import(gno_clipper *c, const gno_shape *subject, const gno_
 /* cells.c: finds all hot pixels and the segments that pass through each. Puts the segments in another order. */
 gno_status gnoi_clip_meet(gno_clipper *c);
 
-/* meet.c: the same for the pixels of one cell; `list` are all segments that pass one of them, in order. 0: out of memory or LIMIT. */
+/* meet.c: the same for the pixels of one cell; `list` are all segments that pass one of them, in order. 0: out of memory, LIMIT or stop. */
 int gnoi_clip_meet_in_cell(gno_clipper *c, const gnoi_cell *cell, const uint32_t *list, size_t count);
 
 /* vertices.c: tells the points apart and numbers them in sweep order. */
@@ -236,14 +240,33 @@ int gnoi_status_meet(gno_clipper *c, uint32_t v, uint32_t ending, gnoi_status *m
 /* Puts the edges first .. first+add-1 in the place of those that ended. */
 int gnoi_status_replace(gno_clipper *c, const gnoi_status *met, uint32_t first, size_t add);
 
-static inline gno_status gnoi_clip_no_memory(gno_clipper *c)
-{
-    return gnoi_fail(c->context, GNO_ERROR_MEMORY, "clipping: out of memory");
-}
+/* Formats the complaint and returns status. */
+gno_status gnoi_clip_refuse(gno_clipper *c, gno_status status, const char *format, ...)
+#if defined(__GNUC__)
+    __attribute__((format(printf, 3, 4)))
+#endif
+    ;
 
 static inline gno_status gnoi_clip_too_many(gno_clipper *c, const char *what)
 {
-    return gnoi_fail(c->context, GNO_ERROR_LIMIT, "clipping: more than 2^31 %s", what);
+    return gnoi_clip_refuse(c, GNO_ERROR_LIMIT, "more than 2^31 %s", what);
+}
+
+/* Counts steps of some nanoseconds each, and asks now and then whether to stop. */
+#define GNOI_CLIP_STEPS 65536
+static inline int gnoi_clip_stopped(gno_clipper *c, size_t steps)
+{
+    c->steps += steps;
+    if (c->steps < GNOI_CLIP_STEPS)
+        return 0;
+    c->steps = 0;
+    return gnoi_stopped(c->context);
+}
+
+/* The same in a loop of small steps. */
+static inline int gnoi_clip_stopped_at(gno_clipper *c, size_t step)
+{
+    return step % 512 == 511 && gnoi_clip_stopped(c, 512);
 }
 
 /* Sign of the turn at a from b to p: +1 when p lies to the left of the line from a to b. */

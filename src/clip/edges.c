@@ -23,12 +23,14 @@ static int changes(const gno_clipper *c, const gnoi_depth *d)
 gno_status gnoi_clip_edges(gno_clipper *c)
 {
     if (!GNOI_CLIP_RESERVE(c, edges, edge_capacity, c->piece_count + 1))
-        return gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
     c->edge_count = 0;
     for (size_t i = 0, j; i < c->piece_count; i = j) {
         const gnoi_piece *p = &c->sorted[i];
         gnoi_edge *e = &c->edges[c->edge_count];
         gnoi_depth sum = {{0, 0}};
+        if (gnoi_clip_stopped(c, 1))
+            return GNO_ERROR_MEMORY;
         for (j = i; j < c->piece_count && c->sorted[j].a == p->a && c->sorted[j].b == p->b; j++) {
             const gnoi_polygon *polygon = &c->polygons[c->sorted[j].polygon];
             sum.of[polygon->operand] += gain(c, &c->sorted[j], polygon);

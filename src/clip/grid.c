@@ -21,31 +21,33 @@ static size_t shape_ring(const gno_shape *shape, size_t polygon)
     return shape->polygon_start ? shape->polygon_start[polygon] : polygon;
 }
 
-static gno_status check_offsets(gno_context *context, const gno_shape *s, const char *name)
+static gno_status check_offsets(gno_clipper *c, const gno_shape *s, const char *name)
 {
     if ((s->ring_count > 0 && (!s->ring_start || !s->points)) || (!s->polygon_start && s->polygon_count != s->ring_count))
-        return gnoi_fail(context, GNO_ERROR_ARGUMENT, "clipping: %s: arrays are missing", name);
+        return gnoi_clip_refuse(c, GNO_ERROR_ARGUMENT, "%s: arrays are missing", name);
     for (size_t r = 0; r < s->ring_count; r++)
         if (s->ring_start[r] > s->ring_start[r + 1])
-            return gnoi_fail(context, GNO_ERROR_ARGUMENT, "clipping: %s: ring_start[%zu] is less than the one before", name, r + 1);
+            return gnoi_clip_refuse(c, GNO_ERROR_ARGUMENT, "%s: ring_start[%zu] is less than the one before", name, r + 1);
     for (size_t p = 0; s->polygon_start && p < s->polygon_count; p++)
         if (s->polygon_start[p] > s->polygon_start[p + 1] || s->polygon_start[p + 1] > s->ring_count)
-            return gnoi_fail(context, GNO_ERROR_ARGUMENT, "clipping: %s: polygon_start[%zu] is out of order", name, p + 1);
+            return gnoi_clip_refuse(c, GNO_ERROR_ARGUMENT, "%s: polygon_start[%zu] is out of order", name, p + 1);
     return GNO_OK;
 }
 
-static gno_status add_bounds(gno_context *context, const gno_shape *s, const char *name, bounds *box)
+static gno_status add_bounds(gno_clipper *c, const gno_shape *s, const char *name, bounds *box)
 {
     size_t end = s->ring_count > 0 ? s->ring_start[s->ring_count] : 0;
-    for (size_t i = s->ring_count > 0 ? s->ring_start[0] : 0; i < end; i++)
+    for (size_t i = s->ring_count > 0 ? s->ring_start[0] : 0; i < end; i++) {
+        if (gnoi_clip_stopped_at(c, i))
+            return GNO_ERROR_MEMORY;
         for (int k = 0; k < 2; k++) {
             double v = s->points[2 * i + (size_t)k];
             if (!(fabs(v) <= LARGEST))
-                return gnoi_fail(context, GNO_ERROR_ARGUMENT, "clipping: %s: coordinate of point %zu is not finite or beyond 1e300",
-                                 name, i);
+                return gnoi_clip_refuse(c, GNO_ERROR_ARGUMENT, "%s: coordinate of point %zu is not finite or beyond 1e300", name, i);
             box->low[k] = v < box->low[k] ? v : box->low[k];
             box->high[k] = v > box->high[k] ? v : box->high[k];
         }
+    }
     return GNO_OK;
 }
 
@@ -78,27 +80,32 @@ static gnoi_site to_grid(const gno_clipper *c, double per_cell, const double *p)
     return s;
 }
 
-/* Adds a ring's points without repetitions; its segments follow in close_ring. */
-static void add_ring_points(gno_clipper *c, const gno_shape *s, size_t ring)
+/* Adds a ring's points without repetitions; 0: stop. */
+static int add_ring_points(gno_clipper *c, const gno_shape *s, size_t ring)
 {
     double per_cell = 1 / c->cell;
     size_t first = c->point_count;
     for (size_t i = s->ring_start[ring]; i < s->ring_start[ring + 1]; i++) {
         gnoi_site p = to_grid(c, per_cell, &s->points[2 * i]);
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
         if (c->point_count == first || !gnoi_site_equal(p, c->points[c->point_count - 1]))
             c->points[c->point_count++] = p;
     }
     while (c->point_count > first && gnoi_site_equal(c->points[first], c->points[c->point_count - 1]))
         c->point_count--;
+    return 1;
 }
 
-static void add_ring_segments(gno_clipper *c, size_t first, uint32_t polygon)
+static int add_ring_segments(gno_clipper *c, size_t first, uint32_t polygon)
 {
     size_t end = c->point_count;
     for (size_t i = first; i < end; i++) {
         size_t j = i + 1 < end ? i + 1 : first;
         gnoi_segment *g = &c->segments[c->segment_count++];
         int up = gnoi_site_less(c->points[i], c->points[j]);
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
         g->a = c->points[up ? i : j];
         g->b = c->points[up ? j : i];
         g->pa = (uint32_t)(up ? i : j);
@@ -106,16 +113,17 @@ static void add_ring_segments(gno_clipper *c, size_t first, uint32_t polygon)
         g->polygon = polygon;
         g->sign = up ? 1 : -1;
     }
+    return 1;
 }
 
 /* +1 or -1 for one convex ring: it turns one way only, never back on itself, and goes to and fro once. */
-static int convex_winding(const gnoi_site *p, size_t count)
+static int convex_winding(gno_clipper *c, const gnoi_site *p, size_t count)
 {
     int way = 0, changes = 0;
     for (size_t i = 0; i < count; i++) {
         gnoi_site a = p[i], b = p[i + 1 < count ? i + 1 : i + 1 - count], d = p[i + 2 < count ? i + 2 : i + 2 - count];
         int turn = gnoi_site_turn(a, b, d), changed = gnoi_site_less(a, b) != gnoi_site_less(b, d);
-        if (turn * way < 0 || (turn == 0 && changed))
+        if (turn * way < 0 || (turn == 0 && changed) || gnoi_clip_stopped_at(c, i))
             return GNOI_POLYGON_PARITY;
         way = turn != 0 ? turn : way;
         changes += changed;
@@ -123,24 +131,25 @@ static int convex_winding(const gnoi_site *p, size_t count)
     return changes == 2 ? way : GNOI_POLYGON_PARITY;
 }
 
-static void add_polygon(gno_clipper *c, const gno_shape *s, size_t polygon, int operand)
+static int add_polygon(gno_clipper *c, const gno_shape *s, size_t polygon, int operand)
 {
     gnoi_polygon *added = &c->polygons[c->polygon_count];
     size_t start = c->point_count, rings = 0;
     added->first = (uint32_t)c->segment_count;
     for (size_t r = shape_ring(s, polygon); r < shape_ring(s, polygon + 1); r++) {
         size_t first = c->point_count;
-        add_ring_points(c, s, r);
-        add_ring_segments(c, first, (uint32_t)c->polygon_count);
+        if (!add_ring_points(c, s, r) || !add_ring_segments(c, first, (uint32_t)c->polygon_count))
+            return 0;
         rings += c->point_count > first;
     }
     added->end = (uint32_t)c->segment_count;
     if (added->first == added->end)
-        return;
+        return 1;
     added->operand = (int8_t)operand;
-    added->winding = (int8_t)(rings == 1 ? convex_winding(c->points + start, c->point_count - start) : GNOI_POLYGON_PARITY);
+    added->winding = (int8_t)(rings == 1 ? convex_winding(c, c->points + start, c->point_count - start) : GNOI_POLYGON_PARITY);
     c->operand_polygons[operand]++;
     c->polygon_count++;
+    return !gnoi_clip_stopped(c, c->point_count - start);
 }
 
 /* Segments that a shape may have: at most its points, each polygon's counted, since polygons may share rings. */
@@ -164,8 +173,8 @@ gno_status gnoi_clip_import(gno_clipper *c, const gno_shape *subject, const gno_
     size_t points = 0, polygons = 0;
     gno_status status = GNO_OK;
     for (int k = 0; k < 2 && shapes[k]; k++) {
-        if ((status = check_offsets(c->context, shapes[k], names[k])) != GNO_OK ||
-            (status = add_bounds(c->context, shapes[k], names[k], &box)) != GNO_OK ||
+        if ((status = check_offsets(c, shapes[k], names[k])) != GNO_OK ||
+            (status = add_bounds(c, shapes[k], names[k], &box)) != GNO_OK ||
             (status = count_points(c, shapes[k], &points, &polygons)) != GNO_OK)
             return status;
     }
@@ -174,12 +183,13 @@ gno_status gnoi_clip_import(gno_clipper *c, const gno_shape *subject, const gno_
     if (!GNOI_CLIP_RESERVE(c, points, point_capacity, points + 1) ||
         !GNOI_CLIP_RESERVE(c, segments, segment_capacity, points + 1) ||
         !GNOI_CLIP_RESERVE(c, polygons, polygon_capacity, polygons + 1))
-        return gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
     if (points == 0)
         return GNO_OK;
     choose_grid(c, &box);
     for (int k = 0; k < 2 && shapes[k]; k++)
         for (size_t p = 0; p < shapes[k]->polygon_count; p++)
-            add_polygon(c, shapes[k], p, k);
+            if (!add_polygon(c, shapes[k], p, k))
+                return GNO_ERROR_MEMORY;
     return GNO_OK;
 }

@@ -65,7 +65,9 @@ static int64_t along(const gno_clipper *c, gnoi_site p)
 
 static int add_split(gno_clipper *c, const gnoi_box *box, uint32_t point)
 {
-    if (c->split_count >= GNOI_CLIP_MOST || !GNOI_CLIP_RESERVE(c, splits, split_capacity, c->split_count + box->count))
+    if (c->split_count >= GNOI_CLIP_MOST)
+        return gnoi_clip_too_many(c, "crossings") == GNO_OK;
+    if (!GNOI_CLIP_RESERVE(c, splits, split_capacity, c->split_count + box->count))
         return 0;
     for (uint32_t i = 0; i < box->count; i++) {
         c->splits[c->split_count].segment = c->members[box->first + i];
@@ -76,7 +78,9 @@ static int add_split(gno_clipper *c, const gnoi_box *box, uint32_t point)
 
 static int add_point(gno_clipper *c, gnoi_site p)
 {
-    if (c->point_count >= GNOI_CLIP_MOST || !GNOI_CLIP_RESERVE(c, points, point_capacity, c->point_count + 1))
+    if (c->point_count >= GNOI_CLIP_MOST)
+        return gnoi_clip_too_many(c, "crossings") == GNO_OK;
+    if (!GNOI_CLIP_RESERVE(c, points, point_capacity, c->point_count + 1))
         return 0;
     c->points[c->point_count++] = p;
     return 1;
@@ -112,18 +116,19 @@ static int seen_before(gno_clipper *c, gnoi_site p)
 static int add_crossing(gno_clipper *c, const gnoi_cell *cell, gnoi_site p)
 {
     uint32_t point = (uint32_t)c->point_count;
+    const gnoi_box *b = c->boxes, *end = b + c->box_count;
     int64_t reach;
     if (!in_cell(cell, p) || seen_before(c, p))
         return 1;
     if (!add_point(c, p))
         return 0;
     reach = along(c, p) + c->cell_slack;
-    for (const gnoi_box *b = c->boxes, *end = b + c->box_count; b < end && b->low <= reach; b++) {
+    for (; b < end && b->low <= reach; b++) {
         const gnoi_segment *s = &c->segments[b->segment];
         if (in_box(b, p) && line_passes(s, side(s, p)) && !add_split(c, b, point))
             return 0;
     }
-    return 1;
+    return !gnoi_clip_stopped(c, (size_t)(b - c->boxes));
 }
 
 /* ---- one pair -------------------------------------------------------------------------------------------------- */
@@ -217,7 +222,7 @@ static void sift_box(const gno_clipper *c, gnoi_box *heap, size_t at, size_t cou
 
 /* A cell that no lattice could thin out: segments there run side by side, or on one another, or through one place. Boxes get their
  * extent across the longest one, in that order only near ones are compared; segments at one place share a box. */
-static void order_crowd(gno_clipper *c)
+static int order_crowd(gno_clipper *c)
 {
     gnoi_box *boxes = c->boxes;
     size_t n = c->box_count, kept = 0;
@@ -237,10 +242,15 @@ static void order_crowd(gno_clipper *c)
         boxes[i].low = (a < b ? a : b) - ROUNDING;
         boxes[i].high = (a < b ? b : a) + ROUNDING;
     }
-    for (size_t i = n / 2; i-- > 0;)
+    for (size_t i = n / 2; i-- > 0;) {
         sift_box(c, boxes, i, n);
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
+    }
     for (size_t end = n; end-- > 1;) {
         gnoi_box largest = boxes[0];
+        if (gnoi_clip_stopped_at(c, end))
+            return 0;
         boxes[0] = boxes[end];
         boxes[end] = largest;
         sift_box(c, boxes, 0, end);
@@ -257,6 +267,7 @@ static void order_crowd(gno_clipper *c)
     }
     c->box_count = kept;
     c->cell_slack = 0;
+    return 1;
 }
 
 int gnoi_clip_meet_in_cell(gno_clipper *c, const gnoi_cell *cell, const uint32_t *list, size_t count)
@@ -274,14 +285,17 @@ int gnoi_clip_meet_in_cell(gno_clipper *c, const gnoi_cell *cell, const uint32_t
         set_box(c, &c->boxes[i], list[i], (uint32_t)i);
         c->members[i] = list[i];
     }
-    if (count > CROWD)
-        order_crowd(c);
+    if (count > CROWD && !order_crowd(c))
+        return 0;
     for (const gnoi_box *s = c->boxes, *end = s + c->box_count; s < end; s++) {
         int64_t reach = s->high + c->cell_slack;
-        for (const gnoi_box *t = s + 1; t < end && t->low <= reach; t++) {
+        const gnoi_box *t = s + 1;
+        for (; t < end && t->low <= reach; t++) {
             if (((t->y0 <= s->y1) & (s->y0 <= t->y1) & (t->x0 <= s->x1) & (s->x0 <= t->x1)) && !meet_pair(c, cell, s, t))
                 return 0;
         }
+        if (gnoi_clip_stopped(c, (size_t)(t - s)))
+            return 0;
     }
     return 1;
 }

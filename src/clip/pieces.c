@@ -57,8 +57,11 @@ static int list_bends(gno_clipper *c)
         c->bucket[c->splits[i].segment + 2]++;
     for (size_t i = 2; i < n + 2; i++)
         c->bucket[i] += c->bucket[i - 1];
-    for (size_t i = 0; i < c->split_count; i++)
+    for (size_t i = 0; i < c->split_count; i++) {
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
         c->chain[c->bucket[c->splits[i].segment + 1]++] = c->vertex_of[c->splits[i].point];
+    }
     return 1;
 }
 
@@ -74,12 +77,14 @@ static void add_piece(gno_clipper *c, const gnoi_segment *s, uint32_t from, uint
     c->piece_count++;
 }
 
-static void cut_segments(gno_clipper *c)
+static int cut_segments(gno_clipper *c)
 {
     c->piece_count = 0;
     for (size_t i = 0; i < c->segment_count; i++) {
         const gnoi_segment *s = &c->segments[i];
         size_t count = c->bucket[i + 1] - c->bucket[i];
+        if (gnoi_clip_stopped(c, 1 + count))
+            return 0;
         uint32_t *chain = count > 0 ? c->chain + c->bucket[i] : NULL, last = c->vertex_of[s->pa]; /* no chain at all: NULL */
         if (count > 1) {
             sort_chain(c, chain, count);
@@ -92,6 +97,7 @@ static void cut_segments(gno_clipper *c)
         }
         add_piece(c, s, last, c->vertex_of[s->pb]);
     }
+    return 1;
 }
 
 /* ---- around a vertex -------------------------------------------------------------------------------------------------- */
@@ -153,11 +159,18 @@ static int sort_pieces(gno_clipper *c)
         c->bucket[c->pieces[i].a + 2]++;
     for (size_t i = 2; i < n + 2; i++)
         c->bucket[i] += c->bucket[i - 1];
-    for (size_t i = 0; i < c->piece_count; i++)
+    for (size_t i = 0; i < c->piece_count; i++) {
+        if (gnoi_clip_stopped_at(c, i))
+            return 0;
         c->sorted[c->bucket[c->pieces[i].a + 1]++] = c->pieces[i];
-    for (size_t i = 0; i < n; i++)
-        if (c->bucket[i + 1] - c->bucket[i] > 1)
-            sort_around(c, c->sorted + c->bucket[i], c->bucket[i + 1] - c->bucket[i]);
+    }
+    for (size_t i = 0; i < n; i++) {
+        size_t count = c->bucket[i + 1] - c->bucket[i];
+        if (count > 1)
+            sort_around(c, c->sorted + c->bucket[i], count);
+        if (gnoi_clip_stopped(c, 1 + count))
+            return 0;
+    }
     return 1;
 }
 
@@ -166,7 +179,6 @@ gno_status gnoi_clip_pieces(gno_clipper *c)
     if (c->segment_count + c->split_count >= GNOI_CLIP_MOST)
         return gnoi_clip_too_many(c, "pieces of edges");
     if (!list_bends(c) || !GNOI_CLIP_RESERVE(c, pieces, piece_capacity, c->segment_count + c->split_count))
-        return gnoi_clip_no_memory(c);
-    cut_segments(c);
-    return sort_pieces(c) ? GNO_OK : gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
+    return cut_segments(c) && sort_pieces(c) ? GNO_OK : GNO_ERROR_MEMORY;
 }

@@ -31,12 +31,14 @@ gno_status gnoi_clip_result(gno_clipper *c, gno_shape *result)
         !GNOI_CLIP_RESERVE(c, result_polygon_start, result_polygon_capacity, c->result_polygons + 1) ||
         !GNOI_CLIP_RESERVE(c, result_ring_start, result_ring_capacity, c->ring_count + 1) ||
         !gnoi_reserve(c->context, (void **)&c->result_points, &c->result_point_capacity, c->ring_vertex_count, 2 * sizeof(double)))
-        return gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
     order_rings(c);
     to = c->result_points;
     c->result_ring_start[0] = 0;
     for (size_t r = 0; r < c->ring_count; r++) {
         const gnoi_ring *ring = &c->rings[c->bucket[r]];
+        if (gnoi_clip_stopped(c, ring->end - ring->first))
+            return GNO_ERROR_MEMORY;
         for (size_t i = ring->first; i < ring->end; i++) {
             gnoi_site p = c->vertices[c->ring_vertex[i]];
             *to++ = (double)(p.x + c->origin[0]) * c->cell;

@@ -72,6 +72,8 @@ static int walk_from(gno_clipper *c, uint32_t start)
     do {
         gnoi_edge *e = &c->edges[i];
         uint32_t v = origin_of(e);
+        if (gnoi_clip_stopped(c, 1))
+            return 0;
         if (c->on_path[v] != GNOI_CLIP_NONE) {
             size_t first = c->on_path[v];
             if (!cut_ring(c, first, count, polygon))
@@ -92,11 +94,11 @@ gno_status gnoi_clip_rings(gno_clipper *c)
     c->ring_count = c->ring_vertex_count = c->result_polygons = 0;
     if (!GNOI_CLIP_RESERVE(c, around, around_capacity, c->edge_count) ||
         !GNOI_CLIP_RESERVE(c, on_path, on_path_capacity, c->vertex_count))
-        return gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
     for (size_t i = 0; i < c->vertex_count; i++)
         c->on_path[i] = GNOI_CLIP_NONE;
     for (size_t i = 0; i < c->edge_count; i++)
         if ((c->edges[i].flags & (GNOI_EDGE_KEPT | GNOI_EDGE_TRACED)) == GNOI_EDGE_KEPT && !walk_from(c, (uint32_t)i))
-            return gnoi_clip_no_memory(c);
+            return GNO_ERROR_MEMORY;
     return GNO_OK;
 }

@@ -92,13 +92,15 @@ gno_status gnoi_clip_sweep(gno_clipper *c, gno_clip_op op)
     for (size_t i = 0; i < c->edge_count; i++)
         ending[c->edges[i].b] = (uint32_t)i;
     if (!gnoi_status_clear(c))
-        return gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
     for (size_t v = 0; v < c->vertex_count; v++) {
         size_t end = first;
+        if (gnoi_clip_stopped(c, 1))
+            return GNO_ERROR_MEMORY;
         while (end < c->edge_count && c->edges[end].a == v)
             end++;
         if ((end > first || ending[v] != GNOI_CLIP_NONE) && !pass_vertex(c, op, (uint32_t)v, ending[v], first, end))
-            return gnoi_clip_no_memory(c);
+            return GNO_ERROR_MEMORY;
         first = end;
     }
     return GNO_OK;

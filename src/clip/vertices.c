@@ -30,16 +30,19 @@ static void sort_run_by_digits(const gno_clipper *c, gnoi_keyed *run, size_t cou
     }
 }
 
-static void sort_points(gno_clipper *c)
+static int sort_points(gno_clipper *c)
 {
     int shift = c->bits > 31 ? c->bits - 31 : 0;
     for (size_t i = 0; i < c->point_count; i++) {
         c->keys[i].key = (uint32_t)(c->points[i].x >> shift);
         c->keys[i].value = (uint32_t)i;
     }
-    gnoi_sort(c->keys, c->key_scratch, c->point_count);
+    if (!gnoi_sort_asking(c->context, c->keys, c->key_scratch, c->point_count))
+        return 0;
     for (size_t i = 0, j; i < c->point_count; i = j) {
         uint32_t key = c->keys[i].key;
+        if (gnoi_clip_stopped(c, 1))
+            return 0;
         for (j = i + 1; j < c->point_count && c->keys[j].key == key; j++)
             ;
         if (j - i <= SHORT_RUN)
@@ -47,6 +50,7 @@ static void sort_points(gno_clipper *c)
         else
             sort_run_by_digits(c, c->keys + i, j - i);
     }
+    return 1;
 }
 
 gno_status gnoi_clip_vertices(gno_clipper *c)
@@ -55,11 +59,14 @@ gno_status gnoi_clip_vertices(gno_clipper *c)
         !GNOI_CLIP_RESERVE(c, key_scratch, key_scratch_capacity, c->point_count) ||
         !GNOI_CLIP_RESERVE(c, vertex_of, vertex_of_capacity, c->point_count) ||
         !GNOI_CLIP_RESERVE(c, vertices, vertex_capacity, c->point_count))
-        return gnoi_clip_no_memory(c);
-    sort_points(c);
+        return GNO_ERROR_MEMORY;
+    if (!sort_points(c))
+        return GNO_ERROR_MEMORY;
     c->vertex_count = 0;
     for (size_t i = 0; i < c->point_count; i++) {
         gnoi_site p = c->points[c->keys[i].value];
+        if (gnoi_clip_stopped_at(c, i))
+            return GNO_ERROR_MEMORY;
         if (c->vertex_count == 0 || !gnoi_site_equal(p, c->vertices[c->vertex_count - 1]))
             c->vertices[c->vertex_count++] = p;
         c->vertex_of[c->keys[i].value] = (uint32_t)(c->vertex_count - 1);

@@ -91,7 +91,7 @@ static int sweep_polygon(gno_clipper *c)
         size_t end = first;
         while (end < c->edge_count && c->edges[end].a == c->keys[i].key)
             end++;
-        if (!gnoi_status_meet(c, c->keys[i].key, c->keys[i].value, &met))
+        if (!gnoi_status_meet(c, c->keys[i].key, c->keys[i].value, &met) || gnoi_clip_stopped_at(c, i))
             return 0;
         give_signs(c, first, end, met.below);
         if (!gnoi_status_replace(c, &met, (uint32_t)first, end - first))
@@ -109,14 +109,14 @@ gno_status gnoi_clip_winding(gno_clipper *c)
     if (sweeps == 0)
         return GNO_OK;
     if (!list_pieces(c))
-        return gnoi_clip_no_memory(c);
+        return GNO_ERROR_MEMORY;
     for (size_t i = 0; i < c->polygon_count; i++) {
         size_t first = i > 0 ? c->bucket[i - 1] : 0;
         if (!needs_sweep(c, &c->polygons[i]))
             continue;
         make_edges(c, c->chain + first, c->bucket[i] - first);
-        if (!sweep_polygon(c))
-            return gnoi_clip_no_memory(c);
+        if (!sweep_polygon(c) || gnoi_clip_stopped(c, c->edge_count))
+            return GNO_ERROR_MEMORY;
     }
     return GNO_OK;
 }

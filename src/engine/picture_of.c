@@ -35,6 +35,7 @@ gno_status gno_pieces_colours(gno_scene *scene, const gno_pieces *pieces, int th
         return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_pieces_colours: no pieces, or no room for their colours");
     if (threads < 0 || threads > GNO_MAX_THREADS)
         return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "threads: %d is not between 0 and %d", threads, GNO_MAX_THREADS);
+    gnoi_begin(scene->context, "colours of pieces");
     memset(&stats, 0, sizeof stats);
     def.threads = threads;
     status = gnoi_frame_job_make(scene, &def, &frame, &stats);

@@ -46,6 +46,9 @@ static int is_thin(const gnoi_tile *tile, const gnoi_poly *poly, double width, d
     return fabs(area) * tile->job->def.base_lines < width;
 }
 
+/* The pixel number v lies in, cut off towards 0, from -1 to most: coordinates may be beyond any integer. */
+static int pixel_at(double v, int most) { return v > -1 ? v < most ? (int)v : most : -1; }
+
 void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count)
 {
     for (size_t i = 0; i < count; i++) {
@@ -54,8 +57,8 @@ void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count)
         int first, last;
         if (right - left < THIN_WIDTH || fabs(e->slope) * THIN_SLOPE < 1)
             continue;
-        first = (int)(left > 0 ? left : 0);
-        last = right < tile->width ? (int)right : tile->width - 1;
+        first = left > 0 ? pixel_at(left, tile->width) : 0;
+        last = right < tile->width ? pixel_at(right, tile->width) : tile->width - 1;
         for (int x = first; x <= last; x++) {
             double at = tile->x0 + x + 0.5, y = e->y + (at - e->x) / e->slope - tile->y0 + 1;
             y = y < e->y - tile->y0 + 1 ? e->y - tile->y0 + 1 : y > e->y1 - tile->y0 + 1 ? e->y1 - tile->y0 + 1 : y;
@@ -67,11 +70,12 @@ void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count)
 
 void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, double y1)
 {
-    int first = x0 > tile->x0 ? (int)(x0 - tile->x0) : 0, last = x1 < tile->x0 + tile->width ? (int)(x1 - tile->x0) : tile->width - 1;
+    int first = x0 > tile->x0 ? pixel_at(x0 - tile->x0, tile->width) : 0;
+    int last = x1 < tile->x0 + tile->width ? pixel_at(x1 - tile->x0, tile->width) : tile->width - 1;
     double top = y0 - tile->y0 + 1, bottom = y1 - tile->y0 + 1;
     if (y1 - y0 >= 1)
         return;
-    for (int row = top > 1 ? (int)top : 1; row <= tile->height && row <= bottom; row++)
+    for (int row = top > 1 ? pixel_at(top, tile->height + 1) : 1; row <= tile->height && row <= bottom; row++)
         for (int x = first; x <= last; x++)
             tile->thin[row * GNOI_TILE_W + x] = 1;
 }

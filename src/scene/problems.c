@@ -140,7 +140,9 @@ static int find_duplicates(search *s)
             s->keys[count++].value = (uint32_t)p;
         }
     }
-    gnoi_sort(s->keys, s->scratch, count);
+    if (!gnoi_sort_asking(s->context, s->keys, s->scratch, count)) {
+        return 0;
+    }
     for (size_t i = 0; i < count; i++) {
         uint32_t p = s->keys[i].value;
         first = s->keys[i].key != s->keys[first].key ? i : first;
@@ -192,12 +194,13 @@ static int sort_edges(search *s)
         s->keys[i].key = s->edges[i].high;
         s->keys[i].value = (uint32_t)i;
     }
-    gnoi_sort(s->keys, s->scratch, s->edge_count);
+    if (!gnoi_sort_asking(s->context, s->keys, s->scratch, s->edge_count)) {
+        return 0;
+    }
     for (size_t i = 0; i < s->edge_count; i++) {
         s->keys[i].key = s->edges[s->keys[i].value].low;
     }
-    gnoi_sort(s->keys, s->scratch, s->edge_count);
-    return !gnoi_stopped(s->context);
+    return gnoi_sort_asking(s->context, s->keys, s->scratch, s->edge_count) && !gnoi_stopped(s->context);
 }
 
 static const edge *sorted(const search *s, size_t i)
@@ -271,14 +274,20 @@ static int find_flipped(search *s)
         uint32_t root = root_of(s, (uint32_t)p, &parity);
         s->group_size[root]++;
         s->group_flips[root] += parity;
+        if (gnoi_stopped_at(s->context, p)) {
+            return 0;
+        }
     }
     for (size_t p = 0; p < s->scene->polygon_count; p++) {
         uint32_t root = root_of(s, (uint32_t)p, &parity);
         unsigned turned = s->group_flips[root] > s->group_size[root] - s->group_flips[root];
         s->marks[p] |= parity != turned ? FLIPPED : 0;
     }
-    for (size_t i = 0, end; i < s->edge_count; i = end) {
+    for (size_t i = 0, end, step = 0; i < s->edge_count; i = end) {
         end = end_of_run(s, i);
+        if (gnoi_stopped_at(s->context, step++)) {
+            return 0;
+        }
         const edge *a = sorted(s, i), *b = sorted(s, end - 1);
         if (end - i == 2 && a->polygon != b->polygon) {
             unsigned differ = a->backward == b->backward, turned = ((s->marks[a->polygon] ^ s->marks[b->polygon]) & FLIPPED) != 0;
@@ -300,9 +309,14 @@ static int report_edge(search *s, gno_problem_kind kind, size_t i, long other)
 {
     const gno_scene *scene = s->scene;
     const edge *e = sorted(s, i);
-    unsigned ring = scene->polygon_start[e->polygon], from = e->corner, to;
-    while (scene->ring_start[ring + 1] <= from) {
-        ring++;
+    unsigned ring = scene->polygon_start[e->polygon], end = scene->polygon_start[e->polygon + 1], from = e->corner, to;
+    while (ring + 1 < end) { /* the ring the corner is of is among [ring, end) */
+        unsigned middle = ring + (end - ring) / 2;
+        if (scene->ring_start[middle] <= from) {
+            ring = middle;
+        } else {
+            end = middle;
+        }
     }
     to = from + 1 < scene->ring_start[ring + 1] ? from + 1 : scene->ring_start[ring];
     return report(s, kind, e->polygon, other, scene->corner_vertex[from], scene->corner_vertex[to]);

@@ -5,6 +5,7 @@
 
 /* Casters lying wholly within one of so many large convex ones are left out of the union, which they do not change. */
 #define LARGE 8
+#define LARGE_CORNERS 64 /* of their outlines at most: every point is tried against every side */
 
 #define FACES 6
 
@@ -164,11 +165,14 @@ typedef struct large {
     double area[LARGE];
 } large;
 
-static void add_large(large *l, size_t polygon, double area)
+static void add_large(large *l, const gno_shape *shape, size_t polygon)
 {
-    int k = l->count < LARGE ? l->count++ : LARGE;
-    if (k == LARGE && area <= l->area[LARGE - 1])
+    double area = gnoi_shape_moment(shape, polygon).area;
+    size_t r = shape->polygon_start[polygon];
+    int k = l->count < LARGE ? l->count : LARGE;
+    if (shape->ring_start[r + 1] - shape->ring_start[r] > LARGE_CORNERS || (k == LARGE && area <= l->area[LARGE - 1]))
         return;
+    l->count += k < LARGE;
     for (k = k < LARGE ? k : LARGE - 1; k > 0 && l->area[k - 1] < area; k--) {
         l->area[k] = l->area[k - 1];
         l->polygon[k] = l->polygon[k - 1];
@@ -201,6 +205,8 @@ static int thin_out(const gno_shape *all, const large *l, gnoi_shape *out)
 {
     for (size_t k = 0; k < all->polygon_count; k++) {
         int inside = 0;
+        if (gnoi_stopped_at(out->context, k))
+            return 0;
         for (int i = 0; i < l->count && !inside; i++)
             inside = l->polygon[i] != k && within(all, k, l->polygon[i]) && !(k < l->polygon[i] && within(all, l->polygon[i], k));
         if (!inside && !gnoi_shape_append(out, all, k, 1))
@@ -246,11 +252,11 @@ static gno_status face_union(const gnoi_centre *centre, gnoi_parter *p, int face
         size_t k = p->work[0].polygon_count;
         if (!centre->stands[i].hides)
             continue;
-        if (!add_outline(centre, (uint32_t)i, face, &p->cover, &p->work[0]))
+        if (gnoi_stopped_at(p->context, i) || !add_outline(centre, (uint32_t)i, face, &p->cover, &p->work[0]))
             return GNO_ERROR_MEMORY;
         all = gnoi_shape_view(&p->work[0]);
         if (p->work[0].polygon_count > k && centre->stands[i].convex)
-            add_large(&l, k, gnoi_shape_moment(&all, k).area);
+            add_large(&l, &all, k);
     }
     all = gnoi_shape_view(&p->work[0]);
     if (!thin_out(&all, &l, &p->work[1]))

@@ -240,6 +240,8 @@ static gno_status certify(job *j, int threads, gno_lit_summary *sum)
     gno_status status = gnoi_parallel(j->scene->context, threads, j->chunk_count, "certificate", certify_chunk, j);
     if (!status)
         status = gnoi_flux_union(&j->centre, &j->workers[0], &sum->flux_union);
+    if (status == GNO_ERROR_LIMIT)
+        gnoi_fail(j->scene->context, status, "certificate: the union of all casters: %s", gno_status_text(status));
     for (size_t i = 0; i < prep->poly_count && !status; i++) {
         const outcome *o = &j->outcomes[i];
         if (j->centre.stands[i].hides) {

@@ -105,6 +105,7 @@ gno_status gno_matrix_build(gno_scene *scene, int light, const gno_matrix_def *d
     if (!matrix)
         return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_matrix_build: matrix is NULL");
     def = def ? def : &defaults;
+    gnoi_begin(scene->context, "shadow matrix");
     status = check(scene, light, def);
     if (!status)
         status = gnoi_scene_prepare(scene, def->threads);

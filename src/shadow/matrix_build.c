@@ -62,7 +62,7 @@ static gno_status find_piece(void *user, int worker, size_t piece)
     f->list = j->lists[worker];
     end = end < packets->packet_count ? end : packets->packet_count;
     for (size_t i = piece * PIECE; i < end && good; i++)
-        good = gnoi_search_packet(j->search, i, f);
+        good = gnoi_search_packet(j->search, i, f) && !gnoi_stopped(f->context);
     j->lists[worker] = f->list;
     memset(&f->list, 0, sizeof f->list);
     if (!good)
@@ -98,7 +98,7 @@ static void count_columns(job *j)
 }
 
 /* After this start[s] is where column s ends. */
-static void move_casters(job *j)
+static int move_casters(job *j)
 {
     const gnoi_poly *polys = j->search->scene->prepared.polys;
     gno_matrix *m = j->matrix;
@@ -113,7 +113,10 @@ static void move_casters(job *j)
             *at += count;
         }
         gnoi_findings_free(f);
+        if (gnoi_stopped(m->context))
+            return 0;
     }
+    return 1;
 }
 
 static void restore_starts(gno_matrix *m)
@@ -124,7 +127,7 @@ static void restore_starts(gno_matrix *m)
 }
 
 /* Sorts columns that came in several parts, and closes the gaps that repeats leave. */
-static void close_up(gno_matrix *m)
+static int close_up(gno_matrix *m)
 {
     size_t to = 0, from = 0;
     for (size_t s = 0; s < m->size; s++) {
@@ -133,8 +136,11 @@ static void close_up(gno_matrix *m)
         from = m->start[s + 1];
         m->start[s] = to;
         to += left;
+        if (gnoi_stopped_at(m->context, s))
+            return 0;
     }
     m->start[m->size] = to;
+    return 1;
 }
 
 static gno_status assemble(job *j)
@@ -150,11 +156,10 @@ static gno_status assemble(job *j)
     m->casters = gnoi_malloc(m->context, m->caster_capacity, sizeof *m->casters);
     if (!m->casters)
         return GNO_ERROR_MEMORY;
-    move_casters(j);
+    if (!move_casters(j))
+        return GNO_ERROR_MEMORY;
     restore_starts(m);
-    if (j->shared)
-        close_up(m);
-    return GNO_OK;
+    return !j->shared || close_up(m) ? GNO_OK : GNO_ERROR_MEMORY;
 }
 
 /* ---- building ----------------------------------------------------------------------------------------------------- */
@@ -214,6 +219,11 @@ gno_status gnoi_matrix_unite(gno_matrix *matrix, const gno_matrix *other)
             casters[to++] = x < y ? x : y;
             a += x <= y;
             b += y <= x;
+        }
+        if (gnoi_stopped_at(matrix->context, s)) {
+            gnoi_free(matrix->context, start, matrix->size + 1, sizeof *start);
+            gnoi_free(matrix->context, casters, room, sizeof *casters);
+            return GNO_ERROR_MEMORY;
         }
         matrix->shade[s] = (unsigned char)gnoi_shade_join((gno_shade)matrix->shade[s], (gno_shade)other->shade[s], 0);
     }

@@ -14,7 +14,6 @@
 #define LIGHT_GAP 1e-9    /* share of the light's height that is cut off below it */
 #define NO_AREA 1e-9      /* share of the receiver's area */
 #define MOST_CORNERS (2 * GNOI_FACET_CORNERS + 4)
-#define REPORT 4096       /* ones between two looks at the progress callback */
 
 typedef struct point2 {
     double x, y;
@@ -165,11 +164,8 @@ static gno_status judge_column(const gnoi_search *lamps, size_t lamp_count, cons
             real = casts_shadow(&lamps[k], &prep->polys[polys[start[r]]], &prep->polys[polys[start[c]]]);
         result->judged++;
         result->false_ones += !real;
-        if (result->judged % REPORT == 0) {
-            gno_status status = gnoi_progress(lamps->scene->context, "checking", (double)r / (double)lamps->scene->polygon_count);
-            if (status)
-                return status;
-        }
+        if (gnoi_stopped(lamps->scene->context))
+            return GNO_ERROR_MEMORY;
     }
     return GNO_OK;
 }
@@ -180,6 +176,7 @@ static gno_status judge_all(const gno_scene *scene, const gnoi_search *lamps, si
     gno_status status = gnoi_polys_by_source(scene, &start, &polys) ? GNO_OK : GNO_ERROR_MEMORY;
     for (size_t s = 0; s < matrix->size && !status; s++) {
         gno_matrix_column column;
+        gnoi_set_fraction(scene->context, (double)s / (double)matrix->size);
         status = gno_matrix_get_column(matrix, s, &column);
         if (!status)
             status = judge_column(lamps, lamp_count, start, polys, &column, result);
@@ -225,7 +222,10 @@ gno_status gno_matrix_check(gno_scene *scene, int light, gno_matrix *matrix, gno
     if (light < 0 || (size_t)light >= scene->light_count || matrix->size != scene->polygon_count)
         return gnoi_fail(scene->context, GNO_ERROR_ARGUMENT, "gno_matrix_check: the matrix is not that of light %d of the scene", light);
     result->judged = result->false_ones = 0;
+    gnoi_begin(scene->context, "checking");
     status = gnoi_scene_prepare(scene, 1);
+    if (!status)
+        status = gnoi_progress(scene->context, "checking", 0);
     if (!status)
         status = check_light(scene, &scene->lights[light].light, matrix, result);
     return status == GNO_ERROR_MEMORY ? gnoi_fail(scene->context, status, "out of memory for checking the shadow matrix") : status;

@@ -179,7 +179,7 @@ VECTOR_CLONES static verdicts test_packet(const gnoi_packet *p, const gnoi_shade
 
 /* ---- columns ------------------------------------------------------------------------------------------------------ */
 
-/* Looks through the packets on the list for casters of one receiver. Returns 0 when memory fails. */
+/* Looks through the packets on the list for casters of one receiver. Returns 0 when memory fails or the call shall stop. */
 static int search_list(const gnoi_search *search, const gnoi_shaded *r, uint32_t poly, const gnoi_lbox *box, gnoi_findings *f, gno_shade *shade)
 {
     const gnoi_prepared *prep = &search->scene->prepared;
@@ -187,6 +187,8 @@ static int search_list(const gnoi_search *search, const gnoi_shaded *r, uint32_t
         const gnoi_packet *packet = &search->packets.packets[f->list.items[i]];
         unsigned mask = gnoi_eight_meet(&search->packets.nodes[f->list.items[i]], box) & packet->casts;
         verdicts v;
+        if (gnoi_stopped_at(f->context, i))
+            return 0;
         if (!mask)
             continue;
         v = test_packet(packet, r, mask);

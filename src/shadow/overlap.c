@@ -104,9 +104,12 @@ gno_status gnoi_facets_build(const gno_scene *scene, gnoi_facets *facets)
     const gnoi_prepared *prep = &scene->prepared;
     gno_status status = GNO_ERROR_MEMORY;
     memset(facets, 0, sizeof *facets);
-    for (size_t i = 0; i < prep->poly_count; i++)
+    for (size_t i = 0; i < prep->poly_count; i++) {
+        if (gnoi_stopped_at(scene->context, i))
+            return GNO_ERROR_MEMORY;
         if (!is_convex(scene, &prep->polys[i]))
             facets->triangle_count += gnoi_triangles_of(&prep->polys[i]);
+    }
     if (facets->triangle_count == 0)
         return GNO_OK;
     facets->poly_count = prep->poly_count;

@@ -1,6 +1,8 @@
 /* parts.c -- see parts.h. */
 #include "shadow/parts.h"
 
+#include "clip/clip.h"
+
 #include <string.h>
 
 static const double full[3] = {1, 1, 1};
@@ -48,7 +50,7 @@ int gnoi_parts_add(gnoi_parts *parts, const gno_shape *from, size_t polygon, con
 gno_status gnoi_parter_clip(gnoi_parter *p, gno_clip_op op, const gno_shape *subject, const gno_shape *clip, gnoi_shape *out)
 {
     gno_shape result;
-    gno_status status = gno_clip(p->clipper, op, subject, clip, &result);
+    gno_status status = gnoi_clip(p->clipper, op, subject, clip, &result);
     gnoi_shape_clear(out);
     if (status)
         return status;
@@ -63,7 +65,7 @@ static int apart(const double a[4], const double b[4]) { return a[2] <= b[0] || 
 static gno_status add_clipped(gnoi_parter *p, gno_clip_op op, const gno_shape *part, const gno_shape *veil, const double passed[3])
 {
     gno_shape result;
-    gno_status status = gno_clip(p->clipper, op, part, veil, &result);
+    gno_status status = gnoi_clip(p->clipper, op, part, veil, &result);
     for (size_t i = 0; i < result.polygon_count && !status; i++)
         if (!gnoi_parts_add(&p->other, &result, i, passed))
             status = GNO_ERROR_MEMORY;
@@ -132,7 +134,7 @@ gno_status gnoi_parter_reach(gnoi_parter *p, const gnoi_canvas *canvas, const gn
     for (size_t i = 0; i < now.polygon_count && !status; i++)
         status = gnoi_parts_add(&p->parts, &now, i, full) ? GNO_OK : GNO_ERROR_MEMORY;
     for (size_t k = 0; k < p->cover.veils.polygon_count && !status; k++)
-        status = split_by_veil(p, canvas, k);
+        status = gnoi_stopped(p->context) ? GNO_ERROR_MEMORY : split_by_veil(p, canvas, k);
     return status;
 }
 
@@ -140,7 +142,7 @@ gno_status gnoi_parter_reach(gnoi_parter *p, const gnoi_canvas *canvas, const gn
 static gno_status append_clipped(gnoi_parter *p, gno_clip_op op, const gno_shape *subject, const gno_shape *clip, gnoi_shape *out)
 {
     gno_shape result;
-    gno_status status = gno_clip(p->clipper, op, subject, clip, &result);
+    gno_status status = gnoi_clip(p->clipper, op, subject, clip, &result);
     if (status)
         return status;
     return gnoi_shape_append(out, &result, 0, result.polygon_count) ? GNO_OK : GNO_ERROR_MEMORY;
@@ -181,7 +183,7 @@ gno_status gnoi_parter_shadow(gnoi_parter *p, const gno_shape *region, int veile
 gno_status gnoi_parter_area(gnoi_parter *p, const gno_shape *shape, double *area)
 {
     gno_shape result;
-    gno_status status = gno_clip(p->clipper, GNO_CLIP_UNION, shape, NULL, &result);
+    gno_status status = gnoi_clip(p->clipper, GNO_CLIP_UNION, shape, NULL, &result);
     *area = status ? 0 : gno_shape_area(&result);
     return status;
 }

@@ -1,6 +1,8 @@
 /* visible_split.c -- see visible_split.h. */
 #include "shadow/visible_split.h"
 
+#include "clip/clip.h"
+
 #include <string.h>
 
 /* Casters beyond which their union is taken before sheet after sheet is split. */
@@ -159,12 +161,12 @@ static gno_status split_by_kept(gnoi_splitter *w, unsigned light, const gnoi_can
             if (!gnoi_shape_append(&w->dark, &lit, k, end - k))
                 return GNO_ERROR_MEMORY;
             group = gnoi_shape_view(&w->dark);
-            status = gno_clip(p->clipper, GNO_CLIP_INTERSECTION, &one, &group, &result);
+            status = gnoi_clip(p->clipper, GNO_CLIP_INTERSECTION, &one, &group, &result);
             if (!status && !add_reached(w, &result, 0, result.polygon_count, s->reach, light, p->parts.passed + 3 * k, thickness))
                 status = GNO_ERROR_MEMORY;
         }
         if (!status)
-            status = gno_clip(p->clipper, GNO_CLIP_DIFFERENCE, &one, &lit, &result);
+            status = gnoi_clip(p->clipper, GNO_CLIP_DIFFERENCE, &one, &lit, &result);
         if (!status && !add_thick(w, &result, 0, result.polygon_count, s->reach, thickness))
             status = GNO_ERROR_MEMORY;
     }

@@ -12,7 +12,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size);
 /* Ends the process as a finding when `good` is 0. */
 void fuzz_expect(int good, const char *what);
 
-/* A context of at most 256 MB whose long calls are cancelled after two seconds. */
+/* A context of at most 256 MB whose long calls are cancelled after four seconds of the processor: a busy machine is no finding. */
 gno_context *fuzz_context(void);
 
 /* Writes the bytes as file `name` into a folder of the process's own; the path is valid until the next call. */
