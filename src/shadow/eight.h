@@ -8,6 +8,7 @@
 
 #include "shadow/frame.h"
 #include <float.h>
+#include <stdint.h>
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
@@ -35,6 +36,17 @@ static inline void gnoi_eight_set(gnoi_eight *node, size_t k, const gnoi_lbox *b
     node->v1[k] = box->v1;
     node->z0[k] = box->z0;
     node->z1[k] = box->z1;
+}
+
+/* Entry k grows so that it holds the box too. */
+static inline void gnoi_eight_grow(gnoi_eight *node, size_t k, const gnoi_lbox *box)
+{
+    node->u0[k] = box->u0 < node->u0[k] ? box->u0 : node->u0[k];
+    node->u1[k] = box->u1 > node->u1[k] ? box->u1 : node->u1[k];
+    node->v0[k] = box->v0 < node->v0[k] ? box->v0 : node->v0[k];
+    node->v1[k] = box->v1 > node->v1[k] ? box->v1 : node->v1[k];
+    node->z0[k] = box->z0 < node->z0[k] ? box->z0 : node->z0[k];
+    node->z1[k] = box->z1 > node->z1[k] ? box->z1 : node->z1[k];
 }
 
 /* The box that holds all of them. */
@@ -71,6 +83,20 @@ static inline unsigned gnoi_eight_meet(const gnoi_eight *node, const gnoi_lbox *
                            node->z0[k] <= q->z1) << k;
 #endif
     return mask;
+}
+
+/* Bit k: lane[k] is -1, not 0. */
+static inline unsigned gnoi_eight_bits(const int32_t lane[GNOI_EIGHT])
+{
+    unsigned bits = 0;
+#if defined(__SSE2__)
+    bits = (unsigned)_mm_movemask_ps(_mm_castsi128_ps(_mm_loadu_si128((const __m128i *)(const void *)lane))) |
+           (unsigned)_mm_movemask_ps(_mm_castsi128_ps(_mm_loadu_si128((const __m128i *)(const void *)(lane + 4)))) << 4;
+#else
+    for (int k = 0; k < GNOI_EIGHT; k++)
+        bits |= (unsigned)(lane[k] & 1) << k;
+#endif
+    return bits;
 }
 
 static inline unsigned gnoi_lowest_bit(unsigned mask)

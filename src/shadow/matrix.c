@@ -178,6 +178,7 @@ void gno_matrix_destroy(gno_matrix *m)
     for (size_t i = 0; i < m->search_count; i++)
         gnoi_search_free(&m->searches[i]);
     gnoi_findings_free(&m->findings);
+    gnoi_search_scratch_free(context, &m->scratch);
     gnoi_free(context, m->searches, m->search_capacity, sizeof *m->searches);
     gnoi_free(context, m->poly_start, m->size + 1, sizeof *m->poly_start);
     gnoi_free(context, m->polys, m->poly_capacity, sizeof *m->polys);
@@ -223,7 +224,7 @@ static gno_status find_column(gno_matrix *m, size_t receiver)
         gno_shade of_lamp = GNO_SHADE_NO_AREA;
         size_t first = f->column_count;
         for (uint32_t i = m->poly_start[receiver]; i < m->poly_start[receiver + 1]; i++)
-            if (!gnoi_search_poly(&m->searches[k], m->polys[i], f))
+            if (!gnoi_search_poly(&m->searches[k], m->polys[i], &m->scratch, f))
                 return gnoi_fail(m->context, GNO_ERROR_MEMORY, "out of memory for a column of the shadow matrix");
         for (size_t c = first; c < f->column_count; c++)
             of_lamp = c == first ? f->columns[c].shade : gnoi_shade_join(of_lamp, f->columns[c].shade, same);
@@ -292,8 +293,7 @@ static size_t bytes_held(const gno_matrix *m)
     if (m->start)
         bytes += (m->size + 1) * sizeof *m->start + m->caster_capacity * sizeof *m->casters + (m->shade ? m->size : 0);
     for (size_t i = 0; i < m->search_count; i++)
-        bytes += m->searches[i].packets.packet_count * sizeof(gnoi_packet) + m->searches[i].packets.node_count * sizeof(gnoi_eight) +
-                 m->searches[i].facets.triangle_count * sizeof *m->searches[i].facets.triangles;
+        bytes += gnoi_packets_bytes(&m->searches[i].packets) + m->searches[i].facets.triangle_count * sizeof *m->searches[i].facets.triangles;
     return bytes;
 }
 

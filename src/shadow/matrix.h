@@ -14,42 +14,55 @@
 
 /* What is needed to find columns of one lamp's matrix. */
 typedef struct gnoi_search {
-    const gno_scene *scene;
-    gnoi_lamp lamp;
+    gnoi_packet_source from;
     gnoi_packets packets;
     gnoi_facets facets;
-    unsigned char *outside; /* by solid: closed, and the light is outside */
 } gnoi_search;
 
 /* Errors: MEMORY, CANCELLED; nothing is left to be freed then. */
 gno_status gnoi_search_make(const gno_scene *scene, const gnoi_lamp *lamp, int threads, gnoi_search *search);
 void gnoi_search_free(gnoi_search *search);
 
-/* A column of a prepared polygon: scene numbers of casters are appended to a list, in no order, some twice. */
+/* A column of a prepared polygon of scene polygon `source`: scene numbers of casters are appended to a list, in no order, some twice. */
 typedef struct gnoi_found_column {
-    uint32_t poly; /* prepared */
-    uint32_t count;
+    uint32_t source, count;
     gno_shade shade;
 } gnoi_found_column;
 
-/* Growing storage of columns, and scratch; one for each worker or piece. */
+/* A caster of receiver `lane` of a packet. */
+typedef struct gnoi_found_caster {
+    uint32_t caster, lane;
+} gnoi_found_caster;
+
+/* What a walk leaves behind for the next one; one for each worker. */
+typedef struct gnoi_search_scratch {
+    gnoi_node_list far, near;
+    size_t found_count, found_capacity;
+    gnoi_found_caster *found;
+} gnoi_search_scratch;
+
+void gnoi_search_scratch_free(gno_context *context, gnoi_search_scratch *scratch);
+
+/* Growing storage of columns; one for each piece. */
 typedef struct gnoi_findings {
     gno_context *context;
     size_t column_count, column_capacity;
     gnoi_found_column *columns;
     size_t caster_count, caster_capacity;
     uint32_t *casters;
-    gnoi_packet_list list; /* scratch */
 } gnoi_findings;
 
 void gnoi_findings_free(gnoi_findings *findings);
 
-/* Appends the columns of all polygons of a packet. Returns 0 when memory fails. A polygon on several faces of a cube frame has a column
- * in each of its packets. */
-int gnoi_search_packet(const gnoi_search *search, size_t packet, gnoi_findings *findings);
+/* Packets that are searched for together: their receivers share the upper part of a walk. */
+#define GNOI_PIECE (GNOI_EIGHT * GNOI_EIGHT)
+
+/* Appends the columns of all polygons of the packets of a piece. Returns 0 when memory fails or the call shall stop. A polygon on several faces of a cube frame has a
+ * column in each of its packets. */
+int gnoi_search_piece(const gnoi_search *search, size_t piece, gnoi_search_scratch *scratch, gnoi_findings *findings);
 
 /* Appends the column of one prepared polygon, one for each face that it lies on. Returns 0 when memory fails. */
-int gnoi_search_poly(const gnoi_search *search, uint32_t poly, gnoi_findings *findings);
+int gnoi_search_poly(const gnoi_search *search, uint32_t poly, gnoi_search_scratch *scratch, gnoi_findings *findings);
 
 /* Sorts casters and drops repeats; returns how many are left. */
 size_t gnoi_sort_casters(gno_context *context, uint32_t *casters, size_t count);
@@ -75,6 +88,7 @@ struct gno_matrix {
     size_t found;           /* the column asked for last, which `findings` holds; SIZE_MAX: none */
     gno_shade found_shade;
     gnoi_findings findings;
+    gnoi_search_scratch scratch;
 };
 
 /* All columns of one lamp, into an empty matrix of the scene's size. Errors: MEMORY, CANCELLED. */

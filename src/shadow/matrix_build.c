@@ -1,6 +1,6 @@
 /* matrix_build.c -- all columns of a light's shadow matrix.
  *
- *   pieces of PIECE packets, any thread -> findings of each piece -> columns counted by scene polygon -> offsets -> casters moved to
+ *   pieces of GNOI_PIECE packets, any thread -> findings of each piece -> columns counted by scene polygon -> offsets -> casters moved to
  *   their places -> columns with several parts sorted again and closed up
  */
 #include "base/parallel.h"
@@ -8,15 +8,13 @@
 
 #include <string.h>
 
-#define PIECE 64 /* packets */
-
 typedef struct job {
     const gnoi_search *search;
     gno_matrix *matrix;
     size_t piece_count;
     gnoi_findings *pieces;
     size_t worker_count;
-    gnoi_packet_list *lists; /* one for each worker */
+    gnoi_search_scratch *scratch; /* one for each worker */
     int shared; /* some scene polygon has several columns */
 } job;
 
@@ -54,18 +52,9 @@ static void trim(gnoi_findings *f)
 static gno_status find_piece(void *user, int worker, size_t piece)
 {
     job *j = user;
-    const gnoi_packets *packets = &j->search->packets;
     gnoi_findings *f = &j->pieces[piece];
-    size_t end = (piece + 1) * PIECE;
-    int good = 1;
-    f->context = j->search->scene->context;
-    f->list = j->lists[worker];
-    end = end < packets->packet_count ? end : packets->packet_count;
-    for (size_t i = piece * PIECE; i < end && good; i++)
-        good = gnoi_search_packet(j->search, i, f) && !gnoi_stopped(f->context);
-    j->lists[worker] = f->list;
-    memset(&f->list, 0, sizeof f->list);
-    if (!good)
+    f->context = j->search->from.scene->context;
+    if (!gnoi_search_piece(j->search, piece, &j->scratch[worker], f))
         return GNO_ERROR_MEMORY;
     sort_columns(f);
     trim(f);
@@ -77,17 +66,16 @@ static gno_status find_piece(void *user, int worker, size_t piece)
 /* matrix->start[s + 1]: ones of scene polygon s so far; its shade. */
 static void count_columns(job *j)
 {
-    const gnoi_poly *polys = j->search->scene->prepared.polys;
     gno_matrix *m = j->matrix;
     for (size_t i = 0; i < j->piece_count; i++)
         for (size_t k = 0; k < j->pieces[i].column_count; k++) {
             const gnoi_found_column *c = &j->pieces[i].columns[k];
-            uint32_t s = polys[c->poly].source;
+            uint32_t s = c->source;
             if (m->shade[s] == GNO_SHADE_NO_AREA) {
                 m->shade[s] = (unsigned char)c->shade;
             } else {
                 /* Parts of a polygon that is not planar are other prepared polygons; each then stands for a part only. */
-                int same = !j->search->scene->prepared.problems.non_planar;
+                int same = !j->search->from.scene->prepared.problems.non_planar;
                 m->shade[s] = (unsigned char)gnoi_shade_join((gno_shade)m->shade[s], c->shade, same);
                 j->shared = 1;
             }
@@ -100,13 +88,12 @@ static void count_columns(job *j)
 /* After this start[s] is where column s ends. */
 static int move_casters(job *j)
 {
-    const gnoi_poly *polys = j->search->scene->prepared.polys;
     gno_matrix *m = j->matrix;
     for (size_t i = 0; i < j->piece_count; i++) {
         gnoi_findings *f = &j->pieces[i];
         const uint32_t *from = f->casters;
         for (size_t k = 0; k < f->column_count; k++) {
-            size_t *at = &m->start[polys[f->columns[k].poly].source], count = f->columns[k].count;
+            size_t *at = &m->start[f->columns[k].source], count = f->columns[k].count;
             for (size_t n = 0; n < count; n++)
                 m->casters[*at + n] = from[n];
             from += count;
@@ -166,17 +153,17 @@ static gno_status assemble(job *j)
 
 static gno_status find_columns(job *j, int threads)
 {
-    gno_context *context = j->search->scene->context;
+    gno_context *context = j->search->from.scene->context;
     gno_status status = GNO_ERROR_MEMORY;
     j->worker_count = (size_t)gnoi_thread_count(threads);
-    j->piece_count = (j->search->packets.packet_count + PIECE - 1) / PIECE;
+    j->piece_count = (j->search->packets.packet_count + GNOI_PIECE - 1) / GNOI_PIECE;
     j->pieces = gnoi_calloc(context, j->piece_count, sizeof *j->pieces);
-    j->lists = gnoi_calloc(context, j->worker_count, sizeof *j->lists);
-    if (j->pieces && j->lists)
+    j->scratch = gnoi_calloc(context, j->worker_count, sizeof *j->scratch);
+    if (j->pieces && j->scratch)
         status = gnoi_parallel(context, threads, j->piece_count, "shadow matrix", find_piece, j);
-    for (size_t i = 0; j->lists && i < j->worker_count; i++)
-        gnoi_free(context, j->lists[i].items, j->lists[i].capacity, sizeof *j->lists[i].items);
-    gnoi_free(context, j->lists, j->worker_count, sizeof *j->lists);
+    for (size_t i = 0; j->scratch && i < j->worker_count; i++)
+        gnoi_search_scratch_free(context, &j->scratch[i]);
+    gnoi_free(context, j->scratch, j->worker_count, sizeof *j->scratch);
     return status;
 }
 

@@ -127,51 +127,78 @@ static double shadow_area(const ground *g, const gnoi_facet *receiver, const gno
     return fabs(area_of(&ring[now]));
 }
 
-/* The sum over all parts of both, cut short when it is more than enough. */
-static int casts_shadow(const gnoi_search *s, const gnoi_poly *receiver, const gnoi_poly *caster)
+/* ---- one column ---------------------------------------------------------------------------------------------------- */
+
+/* Who judges: the lamps of the light, and the receiver at hand. */
+typedef struct judge {
+    const gno_scene *scene;
+    gnoi_facets facets;
+    size_t lamp_count;
+    gnoi_lamp *lamps;
+    ground *grounds; /* the receiver before each lamp */
+    const gnoi_poly *receiver;
+    double area;     /* of the receiver */
+} judge;
+
+static void set_receiver(judge *j, const gnoi_poly *receiver)
 {
-    ground g = ground_make(s->scene, &s->lamp, receiver);
-    gnoi_facet a, b;
-    double area = 0, whole = 0;
-    for (size_t i = 0; gnoi_facet_get(&s->facets, s->scene, receiver, i, &a); i++) {
+    gnoi_facet part;
+    j->receiver = receiver;
+    j->area = 0;
+    for (size_t i = 0; i < j->lamp_count; i++)
+        j->grounds[i] = ground_make(j->scene, &j->lamps[i], receiver);
+    for (size_t i = 0; gnoi_facet_get(&j->facets, j->scene, receiver, i, &part); i++) {
         ring2 flat;
-        flat.count = a.count;
-        for (int k = 0; k < a.count; k++)
-            flat.p[k] = flatten(&g, a.corner[k]);
-        whole += fabs(area_of(&flat));
+        flat.count = part.count;
+        for (int k = 0; k < part.count; k++)
+            flat.p[k] = flatten(&j->grounds[0], part.corner[k]);
+        j->area += fabs(area_of(&flat));
     }
-    for (size_t i = 0; gnoi_facet_get(&s->facets, s->scene, receiver, i, &a); i++)
-        for (size_t k = 0; gnoi_facet_get(&s->facets, s->scene, caster, k, &b); k++) {
-            area += shadow_area(&g, &a, &b);
-            if (area > NO_AREA * whole)
+}
+
+/* The sum over all parts of both, cut short when it is more than enough. */
+static int casts_shadow(const judge *j, const ground *g, const gnoi_poly *caster)
+{
+    gnoi_facet a, b;
+    double area = 0;
+    for (size_t i = 0; gnoi_facet_get(&j->facets, j->scene, j->receiver, i, &a); i++)
+        for (size_t k = 0; gnoi_facet_get(&j->facets, j->scene, caster, k, &b); k++) {
+            area += shadow_area(g, &a, &b);
+            if (area > NO_AREA * j->area)
                 return 1;
         }
     return 0;
 }
 
-/* One column, for whichever of the light's points casts the shadow. */
-static gno_status judge_column(const gnoi_search *lamps, size_t lamp_count, const uint32_t *start, const uint32_t *polys,
-                               const gno_matrix_column *column, gno_matrix_check_result *result)
+/* Polygons that are not planar, and so are several prepared ones, are passed by. start, polys: of gnoi_polys_by_source. */
+static gno_status judge_column(judge *j, const uint32_t *start, const uint32_t *polys, const gno_matrix_column *column,
+                               gno_matrix_check_result *result)
 {
-    const gnoi_prepared *prep = &lamps->scene->prepared;
+    const gnoi_prepared *prep = &j->scene->prepared;
     size_t r = column->receiver;
+    if (column->count == 0 || start[r + 1] - start[r] != 1)
+        return GNO_OK;
+    set_receiver(j, &prep->polys[polys[start[r]]]);
     for (size_t i = 0; i < column->count; i++) {
         uint32_t c = column->casters[i];
         int real = 0;
-        if (c == r || start[r + 1] - start[r] != 1 || start[c + 1] - start[c] != 1)
+        if (c == r || start[c + 1] - start[c] != 1)
             continue;
-        for (size_t k = 0; k < lamp_count && !real; k++)
-            real = casts_shadow(&lamps[k], &prep->polys[polys[start[r]]], &prep->polys[polys[start[c]]]);
+        for (size_t k = 0; k < j->lamp_count && !real; k++)
+            real = casts_shadow(j, &j->grounds[k], &prep->polys[polys[start[c]]]);
         result->judged++;
         result->false_ones += !real;
-        if (gnoi_stopped(lamps->scene->context))
+        if (gnoi_stopped(j->scene->context))
             return GNO_ERROR_MEMORY;
     }
     return GNO_OK;
 }
 
-static gno_status judge_all(const gno_scene *scene, const gnoi_search *lamps, size_t lamp_count, gno_matrix *matrix, gno_matrix_check_result *result)
+/* ---- all ---------------------------------------------------------------------------------------------------------- */
+
+static gno_status judge_all(judge *j, gno_matrix *matrix, gno_matrix_check_result *result)
 {
+    const gno_scene *scene = j->scene;
     uint32_t *start = NULL, *polys = NULL;
     gno_status status = gnoi_polys_by_source(scene, &start, &polys) ? GNO_OK : GNO_ERROR_MEMORY;
     for (size_t s = 0; s < matrix->size && !status; s++) {
@@ -179,7 +206,7 @@ static gno_status judge_all(const gno_scene *scene, const gnoi_search *lamps, si
         gnoi_set_fraction(scene->context, (double)s / (double)matrix->size);
         status = gno_matrix_get_column(matrix, s, &column);
         if (!status)
-            status = judge_column(lamps, lamp_count, start, polys, &column, result);
+            status = judge_column(j, start, polys, &column, result);
     }
     gnoi_free(scene->context, start, scene->polygon_count + 1, sizeof *start);
     gnoi_free(scene->context, polys, scene->prepared.poly_count, sizeof *polys);
@@ -188,27 +215,21 @@ static gno_status judge_all(const gno_scene *scene, const gnoi_search *lamps, si
 
 static gno_status check_light(gno_scene *scene, const gno_light *light, gno_matrix *matrix, gno_matrix_check_result *result)
 {
-    size_t count = gnoi_light_points(light);
-    gnoi_lamp *lamps = gnoi_malloc(scene->context, count, sizeof *lamps);
-    gnoi_search *searches = gnoi_calloc(scene->context, count, sizeof *searches);
-    gnoi_facets facets;
-    gno_status status = gnoi_facets_build(scene, &facets);
-    if (!status && (!lamps || !searches)) {
-        gnoi_facets_free(scene->context, &facets);
-        status = GNO_ERROR_MEMORY;
-    }
+    judge j;
+    gno_status status;
+    memset(&j, 0, sizeof j);
+    j.scene = scene;
+    j.lamp_count = gnoi_light_points(light);
+    j.lamps = gnoi_malloc(scene->context, j.lamp_count, sizeof *j.lamps);
+    j.grounds = gnoi_malloc(scene->context, j.lamp_count, sizeof *j.grounds);
+    status = j.lamps && j.grounds ? gnoi_facets_build(scene, &j.facets) : GNO_ERROR_MEMORY;
     if (!status) {
-        gnoi_lamps_of(light, lamps);
-        for (size_t i = 0; i < count; i++) {
-            searches[i].scene = scene;
-            searches[i].lamp = lamps[i];
-            searches[i].facets = facets; /* shared; the packets are not needed */
-        }
-        status = judge_all(scene, searches, count, matrix, result);
-        gnoi_facets_free(scene->context, &facets);
+        gnoi_lamps_of(light, j.lamps);
+        status = judge_all(&j, matrix, result);
+        gnoi_facets_free(scene->context, &j.facets);
     }
-    gnoi_free(scene->context, lamps, count, sizeof *lamps);
-    gnoi_free(scene->context, searches, count, sizeof *searches);
+    gnoi_free(scene->context, j.lamps, j.lamp_count, sizeof *j.lamps);
+    gnoi_free(scene->context, j.grounds, j.lamp_count, sizeof *j.grounds);
     return status;
 }
 

@@ -1,25 +1,19 @@
 /* matrix_search.c -- columns of the shadow matrix, a packet of eight receivers at a time.
  *
- *   packet of receivers -> own shadow?  -> box around the rest -> packets that may stand before it
- *                                                                 -> for each receiver: eight casters at a time
- *                                                                    -> surely / maybe -> overlap.h
+ *   64 packets -> box around their receivers -> nodes of 64 casters that may stand before it (far)
+ *      -> 8 packets -> those before them (near)
+ *         -> packet of receivers -> packets of casters -> boxes, eight by eight -> sieve.h, eight casters at a time
+ *            -> surely / surely not / overlap.h, one by one
  *
- * Receivers of a packet lie together and share one walk through the tree. What a walk finds is ruled out eight polygons at once, in
- * single precision relative to the packet, with slacks that outweigh its rounding; only what remains is tested one by one.
+ * Receivers that lie together share the walk down the tree, each level of it with as many as the level holds.
  */
 #include "shadow/matrix.h"
 #include "base/sort.h"
-#include "base/tolerance.h"
 #include "base/vector.h"
 #include "shadow/lamp.h"
+#include "shadow/sieve.h"
 
-#include <float.h>
-#include <stdlib.h>
 #include <string.h>
-
-/* Rounding of a distance computed in single precision from coordinates relative to a packet, as a share of its extent: three
- * products and sums of numbers each rounded to 2^-24, with a margin of two. */
-#define PACKET_SLACK 1e-6f
 
 /* ---- search ------------------------------------------------------------------------------------------------------- */
 
@@ -28,17 +22,17 @@ gno_status gnoi_search_make(const gno_scene *scene, const gnoi_lamp *lamp, int t
     const gnoi_prepared *prep = &scene->prepared;
     gno_status status;
     memset(search, 0, sizeof *search);
-    search->scene = scene;
-    search->lamp = *lamp;
-    search->outside = gnoi_calloc(scene->context, prep->solid_count, 1);
-    if (!search->outside)
+    search->from.scene = scene;
+    search->from.lamp = *lamp;
+    search->from.outside = gnoi_calloc(scene->context, prep->solid_count, 1);
+    if (!search->from.outside)
         return GNO_ERROR_MEMORY;
     for (size_t i = 0; i < prep->solid_count; i++)
         if (prep->solids[i].closed)
-            search->outside[i] = (unsigned char)gnoi_lamp_outside(scene, i, lamp);
-    status = gnoi_facets_build(scene, &search->facets);
-    if (!status)
-        status = gnoi_packets_build(scene, lamp, threads, &search->packets);
+            search->from.outside[i] = (unsigned char)gnoi_lamp_outside(scene, i, lamp);
+    status = gnoi_packets_build(&search->from, threads, &search->packets);
+    if (!status && !search->packets.all_convex)
+        status = gnoi_facets_build(scene, &search->facets);
     if (status)
         gnoi_search_free(search);
     return status;
@@ -46,249 +40,299 @@ gno_status gnoi_search_make(const gno_scene *scene, const gnoi_lamp *lamp, int t
 
 void gnoi_search_free(gnoi_search *search)
 {
-    gno_context *context = search->scene->context;
+    gno_context *context = search->from.scene->context;
     gnoi_packets_free(context, &search->packets);
     gnoi_facets_free(context, &search->facets);
-    gnoi_free(context, search->outside, search->scene->prepared.solid_count, 1);
-    search->outside = NULL;
+    gnoi_free(context, search->from.outside, search->from.scene->prepared.solid_count, 1);
+    search->from.outside = NULL;
 }
 
 void gnoi_findings_free(gnoi_findings *f)
 {
     gnoi_free(f->context, f->columns, f->column_capacity, sizeof *f->columns);
     gnoi_free(f->context, f->casters, f->caster_capacity, sizeof *f->casters);
-    gnoi_free(f->context, f->list.items, f->list.capacity, sizeof *f->list.items);
     f->columns = NULL;
     f->casters = NULL;
-    f->list.items = NULL;
-    f->column_count = f->column_capacity = f->caster_count = f->caster_capacity = f->list.count = f->list.capacity = 0;
+    f->column_count = f->column_capacity = f->caster_count = f->caster_capacity = 0;
 }
 
-static int add_caster(gnoi_findings *f, uint32_t source)
+void gnoi_search_scratch_free(gno_context *context, gnoi_search_scratch *s)
 {
-    if (f->caster_count == f->caster_capacity &&
-        !gnoi_reserve(f->context, (void **)&f->casters, &f->caster_capacity, f->caster_count + 1, sizeof *f->casters))
+    gnoi_free(context, s->far.items, s->far.capacity, sizeof *s->far.items);
+    gnoi_free(context, s->near.items, s->near.capacity, sizeof *s->near.items);
+    gnoi_free(context, s->found, s->found_capacity, sizeof *s->found);
+    memset(s, 0, sizeof *s);
+}
+
+/* ---- one packet of receivers --------------------------------------------------------------------------------------- */
+
+/* One receiver, and what is found of it. */
+typedef struct target {
+    uint32_t poly;
+    gno_shade shade;
+    gnoi_shaded shaded;
+    gnoi_sieve sieve;
+} target;
+
+/* Receivers that are searched for together. */
+typedef struct group {
+    const gnoi_search *search;
+    vec3 origin;
+    float extent;
+    gnoi_eight box; /* of those that are searched for */
+    target target[GNOI_PACKET];
+} group;
+
+static void begin_target(group *g, unsigned k, uint32_t index)
+{
+    const gnoi_search *s = g->search;
+    target *t = &g->target[k];
+    t->poly = index;
+    t->shade = GNO_SHADE_NONE;
+    gnoi_shaded_set(&t->shaded, s->from.scene, &s->from.lamp, &s->facets, &s->from.scene->prepared.polys[index]);
+    gnoi_sieve_set(&t->sieve, &t->shaded, g->origin);
+    g->extent = t->sieve.extent > g->extent ? t->sieve.extent : g->extent;
+}
+
+/* mask[k]: those of `casts` whose boxes may stand before receiver k. Returns the receivers before which there are any, as bits. */
+VECTOR_CLONES static unsigned meet_all(const gnoi_eight *casters, const gnoi_eight *receivers, uint32_t casts, uint32_t mask[GNOI_PACKET])
+{
+    uint32_t hit[GNOI_PACKET] = {0};
+    int32_t some[GNOI_PACKET];
+    for (int j = 0; j < GNOI_PACKET; j++) {
+        const float u0 = casters->u0[j], u1 = casters->u1[j], v0 = casters->v0[j], v1 = casters->v1[j], z0 = casters->z0[j];
+        const uint32_t bit = casts & 1u << j;
+        for (int k = 0; k < GNOI_PACKET; k++) { /* no &&, which would be branches */
+            int u = (u0 <= receivers->u1[k]) & (u1 >= receivers->u0[k]), v = (v0 <= receivers->v1[k]) & (v1 >= receivers->v0[k]);
+            hit[k] |= (u & v & (z0 <= receivers->z1[k])) ? bit : 0;
+        }
+    }
+    for (int k = 0; k < GNOI_PACKET; k++) {
+        mask[k] = hit[k];
+        some[k] = -(hit[k] != 0);
+    }
+    return gnoi_eight_bits(some);
+}
+
+static int add_found(gno_context *context, gnoi_search_scratch *scratch, uint32_t caster, unsigned lane)
+{
+    if (scratch->found_count == scratch->found_capacity &&
+        !gnoi_reserve(context, (void **)&scratch->found, &scratch->found_capacity, scratch->found_count + 1, sizeof *scratch->found))
         return 0;
-    f->casters[f->caster_count++] = source;
+    scratch->found[scratch->found_count].caster = caster;
+    scratch->found[scratch->found_count++].lane = lane;
     return 1;
 }
 
-/* Ends the column that began at `first` in the list of casters. */
-static int add_column(gnoi_findings *f, uint32_t poly, size_t first, gno_shade shade)
+/* The casters of a packet that shade one receiver. Returns 0 when memory fails. */
+static int search_casters(group *g, unsigned lane, const gnoi_packet *packet, const gnoi_sieve_place *place, unsigned mask,
+                          gnoi_search_scratch *scratch)
 {
-    if (!gnoi_reserve(f->context, (void **)&f->columns, &f->column_capacity, f->column_count + 1, sizeof *f->columns))
-        return 0;
-    f->columns[f->column_count].poly = poly;
-    f->columns[f->column_count].count = (uint32_t)(f->caster_count - first);
-    f->columns[f->column_count++].shade = shade;
-    return 1;
-}
-
-/* ---- own shadow --------------------------------------------------------------------------------------------------- */
-
-enum { OWN = 1, SEARCH = 2 };
-
-/* Whether the polygon's diagonal is a one, and whether casters are to be looked for: see gnomon_matrix.h. */
-static int judge_own_shadow(const gnoi_search *search, const gnoi_poly *poly)
-{
-    const gnoi_prepared *prep = &search->scene->prepared;
-    double side = gnoi_lamp_side(&search->lamp, poly->n, poly->d), far = 1;
-    uint32_t solid = gnoi_solid_of(prep, poly);
-    if (!search->lamp.directional)
-        far = v3_length(v3_sub(search->lamp.position, v3_from(prep->positions[prep->corner_vertex[poly->corner]])));
-    if (fabs(side) <= GNOI_PARALLEL * far)
-        return OWN;
-    if (search->outside[solid])
-        return (side > 0) == (prep->solids[solid].outwards != 0) ? SEARCH : OWN;
-    return side > 0 ? SEARCH : poly->two_sided ? OWN | SEARCH : OWN;
-}
-
-/* ---- eight casters at a time --------------------------------------------------------------------------------------- */
-
-typedef struct verdicts {
-    unsigned maybe, sure;
-} verdicts;
-
-/* Distances of one of the four points of all eight polygons from a plane: a linear form relative to the packet. */
-static void distances(const gnoi_packet *p, int corner, const float n[3], float c, float out[GNOI_PACKET])
-{
-    for (int k = 0; k < GNOI_PACKET; k++)
-        out[k] = n[0] * p->x[corner][k] + n[1] * p->y[corner][k] + n[2] * p->z[corner][k] + c;
-}
-
-static float plane_at_origin(const gnoi_packet *p, vec3 normal, double constant, float n[3])
-{
-    n[0] = (float)normal.x;
-    n[1] = (float)normal.y;
-    n[2] = (float)normal.z;
-    return (float)(v3_dot(normal, v3_from(p->origin)) + constant);
-}
-
-static int none_left(const int32_t alive[GNOI_PACKET])
-{
-    int32_t some = 0;
-    for (int k = 0; k < GNOI_PACKET; k++)
-        some |= alive[k];
-    return !some;
-}
-
-/* maybe: not all points lie outside one edge's plane, and one lies above the receiver's plane. sure: one of a polygon's own corners lies
- * above it and within all edges: the light's path to the point below is blocked there. Only the entries of `mask` are asked about. */
-VECTOR_CLONES static verdicts test_packet(const gnoi_packet *p, const gnoi_shaded *r, unsigned mask)
-{
-    float slack = PACKET_SLACK * p->extent, n[3], c, d[GNOI_PACKET];
-    float low = (float)r->tolerance - slack, high = (float)r->tolerance + 2 * slack;
-    int32_t inside[GNOI_PACKET_CORNERS][GNOI_PACKET], alive[GNOI_PACKET], wanted[GNOI_PACKET];
-    verdicts v = {0, 0};
-    c = plane_at_origin(p, r->height.a, r->height.b, n);
-    for (int k = 0; k < GNOI_PACKET; k++) {
-        wanted[k] = (int32_t)(mask >> k & 1);
-        alive[k] = 0;
-    }
-    for (int i = 0; i < GNOI_PACKET_CORNERS; i++) {
-        distances(p, i, n, c, d);
-        for (int k = 0; k < GNOI_PACKET; k++) {
-            alive[k] |= d[k] > low;
-            inside[i][k] = d[k] > high;
-        }
-    }
-    for (int k = 0; k < GNOI_PACKET; k++)
-        alive[k] &= wanted[k];
-    for (int e = 0; e < r->edge_count; e++) {
-        int32_t some_in[GNOI_PACKET] = {0};
-        if (none_left(alive))
-            return v;
-        c = plane_at_origin(p, r->edge[e], -v3_dot(r->edge[e], r->facet.corner[e]), n);
-        for (int i = 0; i < GNOI_PACKET_CORNERS; i++) {
-            distances(p, i, n, c, d);
-            for (int k = 0; k < GNOI_PACKET; k++) {
-                some_in[k] |= d[k] > slack;
-                inside[i][k] &= d[k] > 2 * slack;
-            }
-        }
-        for (int k = 0; k < GNOI_PACKET; k++)
-            alive[k] &= some_in[k];
-    }
-    for (int k = 0; k < GNOI_PACKET; k++) {
-        v.maybe |= (unsigned)(alive[k] != 0) << k;
-        v.sure |= (unsigned)((inside[0][k] | inside[1][k] | inside[2][k] | inside[3][k]) != 0) << k;
-    }
-    v.sure &= r->convex ? p->exact : 0u;
-    return v;
-}
-
-/* ---- columns ------------------------------------------------------------------------------------------------------ */
-
-/* Looks through the packets on the list for casters of one receiver. Returns 0 when memory fails or the call shall stop. */
-static int search_list(const gnoi_search *search, const gnoi_shaded *r, uint32_t poly, const gnoi_lbox *box, gnoi_findings *f, gno_shade *shade)
-{
-    const gnoi_prepared *prep = &search->scene->prepared;
-    for (size_t i = 0; i < f->list.count; i++) {
-        const gnoi_packet *packet = &search->packets.packets[f->list.items[i]];
-        unsigned mask = gnoi_eight_meet(&search->packets.nodes[f->list.items[i]], box) & packet->casts;
-        verdicts v;
-        if (gnoi_stopped_at(f->context, i))
-            return 0;
-        if (!mask)
+    const gno_scene *scene = g->search->from.scene;
+    target *t = &g->target[lane];
+    gnoi_verdicts v = gnoi_sieve_test(&t->sieve, packet, place, mask);
+    for (mask = v.maybe; mask; mask &= mask - 1) {
+        unsigned k = gnoi_lowest_bit(mask);
+        gnoi_overlap how = GNOI_OVERLAP_PART;
+        if (packet->poly[k] == t->poly)
             continue;
-        v = test_packet(packet, r, mask);
-        for (mask = v.maybe; mask; mask &= mask - 1) {
-            unsigned k = gnoi_lowest_bit(mask);
-            uint32_t other = packet->poly[k];
-            const gnoi_poly *caster = &prep->polys[other];
-            gnoi_overlap how;
-            if (other == poly)
-                continue;
-            how = v.sure >> k & 1 ? GNOI_OVERLAP_PART : gnoi_overlap_test(r, caster);
+        if (!(v.sure >> k & 1)) {
+            const gnoi_poly *caster = &scene->prepared.polys[packet->poly[k]];
+            how = gnoi_overlap_test(&t->shaded, caster);
             if (how == GNOI_OVERLAP_NONE)
                 continue;
-            if (!add_caster(f, caster->source))
-                return 0;
             if (how == GNOI_OVERLAP_ALL && caster->opaque)
-                *shade = GNO_SHADE_COVERED;
-            else if (*shade == GNO_SHADE_NONE)
-                *shade = GNO_SHADE_PART;
+                t->shade = GNO_SHADE_COVERED;
         }
+        if (!add_found(scene->context, scratch, packet->source[k], lane))
+            return 0;
+        if (t->shade == GNO_SHADE_NONE)
+            t->shade = GNO_SHADE_PART;
     }
     return 1;
 }
 
-static int search_receiver(const gnoi_search *search, uint32_t index, int own, const gnoi_lbox *box, gnoi_findings *f)
+/* All of the group before one packet of casters. */
+static int search_packet(group *g, size_t index, gnoi_search_scratch *scratch)
 {
-    const gnoi_poly *poly = &search->scene->prepared.polys[index];
-    gno_shade shade = GNO_SHADE_NONE;
-    size_t first = f->caster_count;
-    gnoi_shaded r;
-    if (own & SEARCH) {
-        gnoi_shaded_set(&r, search->scene, &search->lamp, &search->facets, poly);
-        if (!search_list(search, &r, index, box, f, &shade))
+    const gnoi_packets *packets = &g->search->packets;
+    const gnoi_packet *packet = &packets->packets[index];
+    gnoi_sieve_place place;
+    uint32_t mask[GNOI_PACKET];
+    unsigned some = meet_all(&packets->nodes[index], &g->box, packet->casts, mask);
+    if (some)
+        gnoi_sieve_place_set(&place, packet, &g->search->from.lamp, g->origin, g->extent);
+    for (; some; some &= some - 1) {
+        unsigned k = gnoi_lowest_bit(some);
+        if (!search_casters(g, k, packet, &place, mask[k], scratch))
             return 0;
     }
-    if (own & OWN) {
-        shade = own & SEARCH ? shade : GNO_SHADE_OWN;
-        if (!add_caster(f, poly->source))
+    return 1;
+}
+
+/* near: nodes of level 1. Returns 0 when memory fails or the call shall stop. */
+static int search_near(group *g, const gnoi_node_list *near, gnoi_search_scratch *scratch)
+{
+    const gnoi_packets *packets = &g->search->packets;
+    const gnoi_eight *level = packets->nodes + packets->level_first[1];
+    gnoi_lbox all = gnoi_eight_union(&g->box);
+    scratch->found_count = 0;
+    for (size_t i = 0; i < near->count; i++) {
+        if (gnoi_stopped_at(g->search->from.scene->context, i))
             return 0;
+        for (unsigned mask = gnoi_eight_meet(&level[near->items[i]], &all); mask; mask &= mask - 1)
+            if (!search_packet(g, (size_t)near->items[i] * GNOI_EIGHT + gnoi_lowest_bit(mask), scratch))
+                return 0;
     }
-    return add_column(f, index, first, shade);
+    return 1;
 }
 
-static gnoi_lbox box_at(const gnoi_eight *boxes, unsigned k)
+/* The columns of the receivers in `lanes`: of each its casters, itself where it is in its own shadow. shade, source: by lane. */
+static int end_targets(const gnoi_search_scratch *scratch, unsigned lanes, unsigned own, const gno_shade *shade, const uint32_t *source, gnoi_findings *f)
 {
-    gnoi_lbox box;
-    box.u0 = boxes->u0[k];
-    box.u1 = boxes->u1[k];
-    box.v0 = boxes->v0[k];
-    box.v1 = boxes->v1[k];
-    box.z0 = boxes->z0[k];
-    box.z1 = boxes->z1[k];
-    return box;
+    size_t count[GNOI_PACKET] = {0}, at[GNOI_PACKET], end = f->caster_count;
+    for (size_t i = 0; i < scratch->found_count; i++)
+        count[scratch->found[i].lane]++;
+    if (!gnoi_reserve(f->context, (void **)&f->columns, &f->column_capacity, f->column_count + GNOI_PACKET, sizeof *f->columns) ||
+        !gnoi_reserve(f->context, (void **)&f->casters, &f->caster_capacity, f->caster_count + scratch->found_count + GNOI_PACKET, sizeof *f->casters))
+        return 0;
+    for (; lanes; lanes &= lanes - 1) {
+        unsigned k = gnoi_lowest_bit(lanes);
+        gnoi_found_column *c = &f->columns[f->column_count++];
+        at[k] = end;
+        end += count[k];
+        if (own >> k & 1)
+            f->casters[end++] = source[k];
+        c->source = source[k];
+        c->count = (uint32_t)(end - at[k]);
+        c->shade = shade[k];
+    }
+    for (size_t i = 0; i < scratch->found_count; i++)
+        f->casters[at[scratch->found[i].lane]++] = scratch->found[i].caster;
+    f->caster_count = end;
+    return 1;
 }
 
-static void add_box(gnoi_lbox *all, const gnoi_lbox *box)
+static void set_box(gnoi_eight *boxes, const gnoi_eight *from, unsigned k)
 {
-    all->u0 = box->u0 < all->u0 ? box->u0 : all->u0;
-    all->u1 = box->u1 > all->u1 ? box->u1 : all->u1;
-    all->v0 = box->v0 < all->v0 ? box->v0 : all->v0;
-    all->v1 = box->v1 > all->v1 ? box->v1 : all->v1;
-    all->z0 = box->z0 < all->z0 ? box->z0 : all->z0;
-    all->z1 = box->z1 > all->z1 ? box->z1 : all->z1;
+    boxes->u0[k] = from->u0[k];
+    boxes->u1[k] = from->u1[k];
+    boxes->v0[k] = from->v0[k];
+    boxes->v1[k] = from->v1[k];
+    boxes->z0[k] = from->z0[k];
+    boxes->z1[k] = from->z1[k];
 }
 
-int gnoi_search_packet(const gnoi_search *search, size_t index, gnoi_findings *f)
+/* The boxes of the polygons of a packet that are searched for. */
+static void searched_boxes(const gnoi_packets *packets, size_t index, gnoi_eight *boxes)
+{
+    gnoi_eight_clear(boxes);
+    for (unsigned k = 0; k < GNOI_PACKET; k++)
+        if (packets->packets[index].search >> k & 1)
+            set_box(boxes, &packets->nodes[index], k);
+}
+
+/* near: nodes of level 1 that may stand before the packet. */
+static int search_receivers(const gnoi_search *search, size_t index, const gnoi_node_list *near, gnoi_search_scratch *scratch, gnoi_findings *f)
 {
     const gnoi_packet *packet = &search->packets.packets[index];
-    gnoi_lbox all = {FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX}, box[GNOI_PACKET];
-    int own[GNOI_PACKET], some = 0;
-    for (unsigned k = 0; k < GNOI_PACKET; k++) {
-        own[k] = packet->poly[k] == GNOI_NONE ? 0 : judge_own_shadow(search, &search->scene->prepared.polys[packet->poly[k]]);
-        if (!(own[k] & SEARCH))
-            continue;
-        box[k] = box_at(&search->packets.nodes[index], k);
-        add_box(&all, &box[k]);
-        some = 1;
-    }
-    f->list.count = 0;
-    if (some && !gnoi_packets_find(f->context, &search->packets, &all, &f->list))
+    gno_shade shade[GNOI_PACKET];
+    group g;
+    g.search = search;
+    g.origin = v3_from(packet->origin);
+    g.extent = 0;
+    scratch->found_count = 0;
+    searched_boxes(&search->packets, index, &g.box);
+    for (unsigned k = 0; k < GNOI_PACKET; k++)
+        if (packet->search >> k & 1)
+            begin_target(&g, k, packet->poly[k]);
+    if (packet->search && !search_near(&g, near, scratch))
         return 0;
     for (unsigned k = 0; k < GNOI_PACKET; k++)
-        if (own[k] && !search_receiver(search, packet->poly[k], own[k], &box[k], f))
-            return 0;
+        shade[k] = packet->search >> k & 1 ? g.target[k].shade : GNO_SHADE_OWN;
+    return end_targets(scratch, packet->search | packet->own, packet->own, shade, packet->source, f);
+}
+
+/* ---- a piece ------------------------------------------------------------------------------------------------------ */
+
+/* The box around what is searched for of packets [first, end); 0 when it is nothing. */
+static int searched_box(const gnoi_packets *packets, size_t first, size_t end, gnoi_lbox *box)
+{
+    gnoi_eight boxes, all;
+    unsigned some = 0;
+    gnoi_eight_clear(&all);
+    for (size_t i = first; i < end; i++) {
+        gnoi_lbox one;
+        searched_boxes(packets, i, &boxes);
+        one = gnoi_eight_union(&boxes);
+        gnoi_eight_grow(&all, (i - first) % GNOI_EIGHT, &one);
+        some |= packets->packets[i].search;
+    }
+    *box = gnoi_eight_union(&all);
+    return some != 0;
+}
+
+/* The far nodes that hold something before the box. */
+static int find_near(gno_context *context, const gnoi_packets *packets, const gnoi_lbox *box, gnoi_search_scratch *scratch)
+{
+    const gnoi_eight *level = packets->nodes + packets->level_first[1];
+    gnoi_node_list *near = &scratch->near;
+    near->count = 0;
+    if (!gnoi_reserve(context, (void **)&near->items, &near->capacity, scratch->far.count, sizeof *near->items))
+        return 0;
+    for (size_t i = 0; i < scratch->far.count; i++)
+        if (gnoi_eight_meet(&level[scratch->far.items[i]], box))
+            near->items[near->count++] = scratch->far.items[i];
     return 1;
 }
 
-int gnoi_search_poly(const gnoi_search *search, uint32_t index, gnoi_findings *f)
+int gnoi_search_piece(const gnoi_search *search, size_t piece, gnoi_search_scratch *scratch, gnoi_findings *f)
 {
-    const gnoi_poly *poly = &search->scene->prepared.polys[index];
-    int own = judge_own_shadow(search, poly), exact, n;
+    const gnoi_packets *packets = &search->packets;
+    size_t first = piece * GNOI_PIECE, end = first + GNOI_PIECE < packets->packet_count ? first + GNOI_PIECE : packets->packet_count;
+    gnoi_lbox box;
+    scratch->far.count = 0;
+    if (searched_box(packets, first, end, &box) && !gnoi_packets_find(f->context, packets, &box, 1, &scratch->far))
+        return 0;
+    for (size_t from = first; from < end; from += GNOI_EIGHT) {
+        size_t to = from + GNOI_EIGHT < end ? from + GNOI_EIGHT : end;
+        if (searched_box(packets, from, to, &box) && !find_near(f->context, packets, &box, scratch))
+            return 0;
+        for (size_t i = from; i < to; i++)
+            if (!search_receivers(search, i, &scratch->near, scratch, f) || gnoi_stopped(f->context))
+                return 0;
+    }
+    return 1;
+}
+
+/* ---- one column --------------------------------------------------------------------------------------------------- */
+
+int gnoi_search_poly(const gnoi_search *search, uint32_t index, gnoi_search_scratch *scratch, gnoi_findings *f)
+{
+    const gno_scene *scene = search->from.scene;
+    const gnoi_poly *poly = &scene->prepared.polys[index];
+    int own = gnoi_judge_own_shadow(&search->from, poly), exact, n;
     vec3 points[GNOI_PACKET_CORNERS];
     gnoi_lbox boxes[6];
-    n = gnoi_poly_points(search->scene, poly, points, &exact);
+    n = gnoi_poly_points(scene, poly, points, &exact);
     n = gnoi_frame_boxes(&search->packets.frame, points, n, boxes);
     n = n > 0 ? n : gnoi_frame_everywhere(boxes);
     for (int i = 0; i < n; i++) {
-        f->list.count = 0;
-        if ((own & SEARCH && !gnoi_packets_find(f->context, &search->packets, &boxes[i], &f->list)) ||
-            !search_receiver(search, index, own, &boxes[i], f))
+        gno_shade shade = GNO_SHADE_OWN;
+        group g;
+        scratch->near.count = scratch->found_count = 0;
+        if (own & GNOI_SEARCH) {
+            g.search = search;
+            g.origin = points[0];
+            g.extent = 0;
+            gnoi_eight_clear(&g.box);
+            gnoi_eight_set(&g.box, 0, &boxes[i]);
+            begin_target(&g, 0, index);
+            if (!gnoi_packets_find(f->context, &search->packets, &boxes[i], 1, &scratch->near) || !search_near(&g, &scratch->near, scratch))
+                return 0;
+            shade = g.target[0].shade;
+        }
+        if (!end_targets(scratch, 1, own & GNOI_OWN ? 1 : 0, &shade, &poly->source, f))
             return 0;
     }
     return 1;
@@ -296,14 +340,8 @@ int gnoi_search_poly(const gnoi_search *search, uint32_t index, gnoi_findings *f
 
 /* ---- putting columns together ---------------------------------------------------------------------------------------- */
 
-static int compare_numbers(const void *a, const void *b)
-{
-    uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
-    return (x > y) - (x < y);
-}
-
 #define SHORT_COLUMN 24
-#define LONG_COLUMN 4096
+#define LONG_COLUMN 512
 
 /* By digits; returns 0 when there is no memory for it. */
 static int sort_long_column(gno_context *context, uint32_t *casters, size_t count)
@@ -320,20 +358,25 @@ static int sort_long_column(gno_context *context, uint32_t *casters, size_t coun
     return 1;
 }
 
+/* By insertion over shrinking gaps: Shell, "A high-speed sorting procedure", 1959, with Ciura's gaps of 2001. */
+static void sort_column(uint32_t *casters, size_t count)
+{
+    static const size_t gaps[] = {1035711, 460316, 204585, 90927, 40412, 17961, 7983, 3548, 1577, 701, 301, 132, 57, 23, 10, 4, 1};
+    for (size_t g = count <= SHORT_COLUMN ? sizeof gaps / sizeof gaps[0] - 1 : 0; g < sizeof gaps / sizeof gaps[0]; g++)
+        for (size_t gap = gaps[g], i = gap; i < count; i++) {
+            uint32_t c = casters[i];
+            size_t j = i;
+            for (; j >= gap && casters[j - gap] > c; j -= gap)
+                casters[j] = casters[j - gap];
+            casters[j] = c;
+        }
+}
+
 size_t gnoi_sort_casters(gno_context *context, uint32_t *casters, size_t count)
 {
     size_t n = 0;
-    if (count <= SHORT_COLUMN) {
-        for (size_t i = 1; i < count; i++) {
-            uint32_t c = casters[i];
-            size_t j = i;
-            for (; j > 0 && casters[j - 1] > c; j--)
-                casters[j] = casters[j - 1];
-            casters[j] = c;
-        }
-    } else if (count < LONG_COLUMN || !sort_long_column(context, casters, count)) {
-        qsort(casters, count, sizeof *casters, compare_numbers);
-    }
+    if (count < LONG_COLUMN || !sort_long_column(context, casters, count))
+        sort_column(casters, count);
     for (size_t i = 0; i < count; i++)
         if (n == 0 || casters[i] != casters[n - 1])
             casters[n++] = casters[i];

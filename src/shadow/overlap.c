@@ -28,29 +28,6 @@
 
 /* ---- convex parts ------------------------------------------------------------------------------------------------ */
 
-/* Whether the polygon is one ring that turns one way and around once (the first edge's direction is passed upwards once only). */
-static int is_convex(const gno_scene *scene, const gnoi_poly *poly)
-{
-    vec3 n = v3_from(poly->n), first;
-    uint32_t count = poly->corner_count;
-    int was_up = 0, rises = 0;
-    if (count == 3)
-        return 1;
-    if (poly->ring_count != 1 || count > GNOI_FACET_CORNERS)
-        return 0;
-    first = v3_cross(n, v3_sub(gnoi_corner_at(scene, poly->corner + 1), gnoi_corner_at(scene, poly->corner)));
-    for (uint32_t i = 0; i < count; i++) {
-        vec3 a = gnoi_corner_at(scene, poly->corner + i), b = gnoi_corner_at(scene, poly->corner + (i + 1) % count);
-        vec3 c = gnoi_corner_at(scene, poly->corner + (i + 2) % count), e = v3_sub(c, b);
-        int up = v3_dot(e, first) > 0;
-        if (!(v3_dot(v3_cross(v3_sub(b, a), e), n) > 0))
-            return 0;
-        rises += up && !was_up && i + 1 < count; /* the last is the first edge again */
-        was_up = up;
-    }
-    return rises <= 1;
-}
-
 static double area_of(vec3 a, vec3 b, vec3 c, vec3 n)
 {
     return 0.5 * v3_dot(v3_cross(v3_sub(b, a), v3_sub(c, a)), n);
@@ -107,7 +84,7 @@ gno_status gnoi_facets_build(const gno_scene *scene, gnoi_facets *facets)
     for (size_t i = 0; i < prep->poly_count; i++) {
         if (gnoi_stopped_at(scene->context, i))
             return GNO_ERROR_MEMORY;
-        if (!is_convex(scene, &prep->polys[i]))
+        if (!gnoi_poly_is_convex(scene, &prep->polys[i]))
             facets->triangle_count += gnoi_triangles_of(&prep->polys[i]);
     }
     if (facets->triangle_count == 0)
@@ -117,7 +94,7 @@ gno_status gnoi_facets_build(const gno_scene *scene, gnoi_facets *facets)
     facets->triangles = gnoi_malloc(scene->context, facets->triangle_count, sizeof *facets->triangles);
     if (facets->first && facets->triangles) {
         for (size_t i = 0; i < prep->poly_count; i++)
-            facets->first[i] = is_convex(scene, &prep->polys[i]) ? IS_CONVEX : 0;
+            facets->first[i] = gnoi_poly_is_convex(scene, &prep->polys[i]) ? IS_CONVEX : 0;
         status = triangulate(scene, facets);
     }
     if (status)

@@ -11,10 +11,7 @@
 
 #include "project/view.h"
 #include "scene/scene.h"
-#include "shadow/frame.h"
-
-/* A convex polygon of more corners is taken apart too. */
-#define GNOI_FACET_CORNERS 16
+#include "shadow/packet.h"
 
 /* A convex part of a polygon. */
 typedef struct gnoi_facet {

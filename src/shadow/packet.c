@@ -7,6 +7,7 @@
  */
 #include "shadow/packet.h"
 #include "base/parallel.h"
+#include "base/tolerance.h"
 
 #include <float.h>
 #include <string.h>
@@ -23,11 +24,13 @@ typedef struct chunk {
     size_t count, capacity;
     entry *entries;
     float u0, u1, v0, v1;
+    int all_convex;
     size_t place[MOST_BINS]; /* first a count, then where the chunk's share of the bin begins */
 } chunk;
 
 typedef struct job {
     const gno_scene *scene;
+    const gnoi_packet_source *source;
     gnoi_packets *packets;
     size_t chunk_count;
     chunk *chunks;
@@ -38,63 +41,20 @@ typedef struct job {
 
 static size_t min_size(size_t a, size_t b) { return a < b ? a : b; }
 
-/* ---- points of a polygon ------------------------------------------------------------------------------------------- */
+/* ---- own shadow --------------------------------------------------------------------------------------------------- */
 
-/* Whether the ring turns one way at each of its (at most four) corners. */
-static int is_convex(const vec3 *p, int count, vec3 n)
+int gnoi_judge_own_shadow(const gnoi_packet_source *source, const gnoi_poly *poly)
 {
-    for (int i = 0; i < count && count > 3; i++) {
-        vec3 a = p[i], b = p[(i + 1) % count], c = p[(i + 2) % count];
-        if (!(v3_dot(v3_cross(v3_sub(b, a), v3_sub(c, b)), n) > 0))
-            return 0;
-    }
-    return 1;
-}
-
-/* The rectangle around the corners along the first edge that is no point. */
-static void bounding_rectangle(const gnoi_prepared *prep, const gnoi_poly *poly, vec3 points[4])
-{
-    uint32_t first = poly->corner, end = prep->ring_corner[poly->ring + 1];
-    vec3 n = v3_from(poly->n), origin = v3_from(prep->positions[prep->corner_vertex[first]]), e1, e2;
-    double lo[2] = {0, 0}, hi[2] = {0, 0};
-    e1 = v3_unit(v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0)));
-    for (uint32_t i = first + 1; i < end; i++) {
-        vec3 edge = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
-        vec3 flat = v3_mad(edge, n, -v3_dot(edge, n));
-        if (v3_dot(flat, flat) > 0) {
-            e1 = v3_unit(flat);
-            break;
-        }
-    }
-    e2 = v3_cross(n, e1);
-    for (uint32_t i = first; i < end; i++) {
-        vec3 q = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
-        double s = v3_dot(q, e1), t = v3_dot(q, e2);
-        lo[0] = s < lo[0] ? s : lo[0];
-        hi[0] = s > hi[0] ? s : hi[0];
-        lo[1] = t < lo[1] ? t : lo[1];
-        hi[1] = t > hi[1] ? t : hi[1];
-    }
-    points[0] = v3_mad(v3_mad(origin, e1, lo[0]), e2, lo[1]);
-    points[1] = v3_mad(v3_mad(origin, e1, hi[0]), e2, lo[1]);
-    points[2] = v3_mad(v3_mad(origin, e1, hi[0]), e2, hi[1]);
-    points[3] = v3_mad(v3_mad(origin, e1, lo[0]), e2, hi[1]);
-}
-
-int gnoi_poly_points(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_PACKET_CORNERS], int *exact)
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    *exact = 0;
-    if (poly->corner_count <= GNOI_PACKET_CORNERS && poly->ring_count == 1) {
-        int count = (int)poly->corner_count;
-        for (int i = 0; i < count; i++)
-            points[i] = v3_from(prep->positions[prep->corner_vertex[poly->corner + (uint32_t)i]]);
-        *exact = is_convex(points, count, v3_from(poly->n));
-        if (*exact)
-            return count;
-    }
-    bounding_rectangle(prep, poly, points);
-    return 4;
+    const gnoi_prepared *prep = &source->scene->prepared;
+    double side = gnoi_lamp_side(&source->lamp, poly->n, poly->d), far = 1;
+    uint32_t solid = gnoi_solid_of(prep, poly);
+    if (!source->lamp.directional)
+        far = v3_length(v3_sub(source->lamp.position, v3_from(prep->positions[prep->corner_vertex[poly->corner]])));
+    if (fabs(side) <= GNOI_PARALLEL * far)
+        return GNOI_OWN;
+    if (source->outside[solid])
+        return (side > 0) == (prep->solids[solid].outwards != 0) ? GNOI_SEARCH : GNOI_OWN;
+    return side > 0 ? GNOI_SEARCH : poly->two_sided ? GNOI_OWN | GNOI_SEARCH : GNOI_OWN;
 }
 
 /* ---- boxes and bins ---------------------------------------------------------------------------------------------- */
@@ -116,6 +76,7 @@ static gno_status find_boxes(void *user, int worker, size_t piece)
     (void)worker;
     c->u0 = c->v0 = FLT_MAX;
     c->u1 = c->v1 = -FLT_MAX;
+    c->all_convex = 1;
     c->entries = gnoi_malloc(j->scene->context, end - first, sizeof *c->entries);
     if (!c->entries)
         return GNO_ERROR_MEMORY;
@@ -124,12 +85,16 @@ static gno_status find_boxes(void *user, int worker, size_t piece)
         vec3 points[GNOI_PACKET_CORNERS];
         gnoi_lbox boxes[6];
         int exact, n = gnoi_poly_points(j->scene, &prep->polys[i], points, &exact);
+        unsigned char own = (unsigned char)gnoi_judge_own_shadow(j->source, &prep->polys[i]);
+        c->all_convex &= exact;
         n = gnoi_frame_boxes(&j->packets->frame, points, n, boxes);
         n = n > 0 ? n : gnoi_frame_everywhere(boxes);
         if (!gnoi_reserve(j->scene->context, (void **)&c->entries, &c->capacity, c->count + (size_t)n, sizeof *c->entries))
             return GNO_ERROR_MEMORY;
         for (int k = 0; k < n; k++) {
             c->entries[c->count].box = boxes[k];
+            c->entries[c->count].own = own;
+            c->entries[c->count].exact = (unsigned char)exact;
             c->entries[c->count++].poly = (uint32_t)i;
             if (boxes[k].u1 < FLT_MAX)
                 chunk_bounds(c, &boxes[k]);
@@ -155,7 +120,7 @@ static gno_status count_bins(void *user, int worker, size_t piece)
     chunk *c = &j->chunks[piece];
     (void)worker;
     for (size_t i = 0; i < c->count; i++) {
-        c->entries[i].bin = bin_of(&c->entries[i].box, j->whole, j->packets->frame.faces);
+        c->entries[i].bin = (uint16_t)bin_of(&c->entries[i].box, j->whole, j->packets->frame.faces);
         c->place[c->entries[i].bin]++;
     }
     return GNO_OK;
@@ -164,8 +129,10 @@ static gno_status count_bins(void *user, int worker, size_t piece)
 static void find_whole(job *j)
 {
     float u0 = FLT_MAX, u1 = -FLT_MAX, v0 = FLT_MAX, v1 = -FLT_MAX;
+    j->packets->all_convex = 1;
     for (size_t i = 0; i < j->chunk_count; i++) {
         const chunk *c = &j->chunks[i];
+        j->packets->all_convex &= c->all_convex;
         u0 = c->u0 < u0 ? c->u0 : u0;
         u1 = c->u1 > u1 ? c->u1 : u1;
         v0 = c->v0 < v0 ? c->v0 : v0;
@@ -211,7 +178,7 @@ static gno_status clear_places(void *user, int worker, size_t piece)
     size_t end = min_size((piece + 1) * GNOI_RUN, j->place_count);
     (void)worker;
     for (size_t i = piece * GNOI_RUN; i < end; i++) {
-        static const entry empty = {{FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX}, GNOI_NONE, 0};
+        static const entry empty = {{FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX}, GNOI_NONE, 0, 0, 0};
         j->places[i] = empty;
     }
     return GNO_OK;
@@ -229,16 +196,19 @@ static gno_status fill_places(void *user, int worker, size_t piece)
     return GNO_OK;
 }
 
-/* The runs of whole entries of one bin in a piece of the row. */
-static void split_runs(entry *places, size_t count, int parallel)
+/* The runs of whole entries of one bin in a piece of the row: order[i] is the number of the entry at place i of the piece. */
+static void split_runs(const entry *places, size_t count, int parallel, uint16_t order[GNOI_RUN])
 {
     for (size_t from = 0, to; from < count; from = to) {
         to = from + 1;
+        order[from] = (uint16_t)from;
         if (places[from].poly == GNOI_NONE)
             continue;
         while (to < count && places[to].poly != GNOI_NONE && places[to].bin == places[from].bin)
             to++;
-        gnoi_packet_split(places + from, to - from, parallel);
+        gnoi_packet_split(places + from, to - from, parallel, order + from);
+        for (size_t i = from; i < to; i++)
+            order[i] = (uint16_t)(order[i] + from);
     }
 }
 
@@ -250,51 +220,101 @@ static int casts(const gno_scene *scene, const gnoi_poly *poly)
     return !poly->detail && (poly->opaque || !(t[0] >= 1 && t[1] >= 1 && t[2] >= 1));
 }
 
-static void fill_corners(const gno_scene *scene, gnoi_packet *packet)
+typedef struct points {
+    int count;
+    vec3 at[GNOI_PACKET_CORNERS];
+} points;
+
+/* The corners of one polygon, in column k of the block. */
+static void put_corners(const points *from, unsigned k, vec3 origin, gnoi_packet *packet, float *corner)
 {
-    float extent = 0;
-    vec3 points[GNOI_PACKET_CORNERS], origin = v3(0, 0, 0);
-    packet->casts = packet->exact = 0;
-    for (int k = 0; k < GNOI_PACKET; k++) {
-        const gnoi_poly *poly;
-        int count = 0, exact = 0;
-        if (packet->poly[k] != GNOI_NONE) {
-            poly = &scene->prepared.polys[packet->poly[k]];
-            count = gnoi_poly_points(scene, poly, points, &exact);
-            packet->casts |= (unsigned char)(casts(scene, poly) << k);
-            packet->exact |= (unsigned char)(exact << k);
-            if (k == 0)
-                origin = points[0];
-        }
-        for (int i = 0; i < GNOI_PACKET_CORNERS; i++) {
-            vec3 q = count > 0 ? v3_sub(points[i < count ? i : count - 1], origin) : v3(0, 0, 0);
-            float x = (float)q.x, y = (float)q.y, z = (float)q.z, far = fmaxf(fabsf(x), fmaxf(fabsf(y), fabsf(z)));
-            packet->x[i][k] = x;
-            packet->y[i][k] = y;
-            packet->z[i][k] = z;
-            extent = far > extent ? far : extent;
-        }
+    for (uint32_t i = 0; i < packet->corner_count; i++, corner += 3 * GNOI_PACKET) {
+        vec3 q = v3_sub(from->at[(int)i < from->count ? (int)i : from->count - 1], origin);
+        float x = (float)q.x, y = (float)q.y, z = (float)q.z, far = fabsf(x) > fabsf(y) ? fabsf(x) : fabsf(y);
+        far = fabsf(z) > far ? fabsf(z) : far;
+        corner[k] = x;
+        corner[GNOI_PACKET + k] = y;
+        corner[2 * GNOI_PACKET + k] = z;
+        packet->extent = far > packet->extent ? far : packet->extent;
     }
-    packet->extent = extent;
-    packet->origin[0] = origin.x;
-    packet->origin[1] = origin.y;
-    packet->origin[2] = origin.z;
+}
+
+/* The corners' block is taken from `corner` on. Returns where the next one begins. */
+static float *fill_packet(const job *j, const entry *const e[GNOI_PACKET], gnoi_packet *packet, float *corner)
+{
+    const gno_scene *scene = j->scene;
+    points from[GNOI_PACKET];
+    memset(packet, 0, sizeof *packet);
+    packet->corner_count = 3;
+    packet->corner = corner;
+    for (unsigned k = 0; k < GNOI_PACKET; k++) {
+        const gnoi_poly *poly;
+        packet->poly[k] = packet->source[k] = GNOI_NONE;
+        from[k].count = 0;
+        if (e[k]->poly == GNOI_NONE)
+            continue;
+        poly = &scene->prepared.polys[e[k]->poly];
+        from[k].count = gnoi_poly_points_again(scene, poly, e[k]->exact, from[k].at);
+        packet->poly[k] = e[k]->poly;
+        packet->source[k] = poly->source;
+        packet->casts |= (unsigned char)(casts(scene, poly) << k);
+        packet->exact |= (unsigned char)(e[k]->exact << k);
+        packet->own |= (unsigned char)(((e[k]->own & GNOI_OWN) != 0) << k);
+        packet->search |= (unsigned char)(((e[k]->own & GNOI_SEARCH) != 0) << k);
+        if ((uint32_t)from[k].count > packet->corner_count)
+            packet->corner_count = (uint32_t)from[k].count;
+    }
+    memset(corner, 0, 3 * GNOI_PACKET * packet->corner_count * sizeof *corner);
+    for (unsigned k = 0; k < GNOI_PACKET && from[0].count > 0; k++)
+        if (from[k].count > 0)
+            put_corners(&from[k], k, from[0].at[0], packet, corner);
+    if (from[0].count > 0) {
+        packet->origin[0] = from[0].at[0].x;
+        packet->origin[1] = from[0].at[0].y;
+        packet->origin[2] = from[0].at[0].z;
+    }
+    return corner + 3 * GNOI_PACKET * packet->corner_count;
+}
+
+/* Room for the corners of a run's packets, as many as the longest of their polygons have. */
+static size_t count_corners(const job *j, const entry *places, const uint16_t *order, size_t packet_count)
+{
+    size_t count = 0;
+    for (size_t i = 0; i < packet_count; i++) {
+        uint32_t most = 3;
+        for (size_t k = 0; k < GNOI_PACKET; k++) {
+            const entry *e = &places[order[i * GNOI_PACKET + k]];
+            uint32_t n = e->poly == GNOI_NONE ? 0 : e->exact ? j->scene->prepared.polys[e->poly].corner_count : 4;
+            most = n > most ? n : most;
+        }
+        count += most;
+    }
+    return 3 * GNOI_PACKET * count;
 }
 
 static gno_status fill_packets(void *user, int worker, size_t piece)
 {
     job *j = user;
-    size_t end = min_size((piece + 1) * RUN_PACKETS, j->packets->packet_count);
+    gnoi_packets *packets = j->packets;
+    gnoi_packet_block *block = &packets->blocks[piece];
+    size_t first = piece * RUN_PACKETS, end = min_size(first + RUN_PACKETS, packets->packet_count);
+    const entry *places = j->places + piece * GNOI_RUN;
+    uint16_t order[GNOI_RUN];
+    float *corner;
     (void)worker;
-    split_runs(j->places + piece * GNOI_RUN, min_size(GNOI_RUN, j->place_count - piece * GNOI_RUN),
-               j->packets->frame.parallel);
-    for (size_t i = piece * RUN_PACKETS; i < end; i++) {
-        const entry *e = &j->places[i * GNOI_PACKET];
+    split_runs(places, min_size(GNOI_RUN, j->place_count - piece * GNOI_RUN), packets->frame.parallel, order);
+    block->count = count_corners(j, places, order, end - first);
+    block->corners = gnoi_malloc(j->scene->context, block->count, sizeof *block->corners);
+    if (!block->corners)
+        return GNO_ERROR_MEMORY;
+    corner = block->corners;
+    for (size_t i = first; i < end; i++) {
+        const entry *e[GNOI_PACKET];
         for (size_t k = 0; k < GNOI_PACKET; k++) {
-            gnoi_eight_set(&j->packets->nodes[i], k, &e[k].box);
-            j->packets->packets[i].poly[k] = e[k].poly;
+            e[k] = &places[order[(i - first) * GNOI_PACKET + k]];
+            gnoi_eight_set(&packets->nodes[i], k, &e[k]->box);
         }
-        fill_corners(j->scene, &j->packets->packets[i]);
+        corner = fill_packet(j, e, &packets->packets[i], corner);
     }
     return GNO_OK;
 }
@@ -307,7 +327,7 @@ static void plan_levels(gnoi_packets *packets)
     while (n > 0) {
         packets->level_first[packets->levels++] = packets->node_count;
         packets->node_count += n;
-        if (n == 1)
+        if (n == 1 && packets->levels > 1)
             break;
         n = (n + GNOI_PACKET - 1) / GNOI_PACKET;
     }
@@ -364,8 +384,10 @@ static gno_status place_polygons(job *j, int threads)
     packets->packet_count = j->place_count / GNOI_PACKET;
     plan_levels(packets);
     packets->packets = gnoi_malloc(context, packets->packet_count, sizeof *packets->packets);
+    packets->block_count = runs;
+    packets->blocks = gnoi_calloc(context, runs, sizeof *packets->blocks);
     packets->nodes = gnoi_malloc(context, packets->node_count, sizeof *packets->nodes);
-    if (!packets->packets || !packets->nodes)
+    if (!packets->packets || !packets->nodes || !packets->blocks)
         return GNO_ERROR_MEMORY;
     status = gnoi_parallel(context, threads, runs, stage, fill_packets, j);
     if (!status)
@@ -373,14 +395,16 @@ static gno_status place_polygons(job *j, int threads)
     return status;
 }
 
-gno_status gnoi_packets_build(const gno_scene *scene, const gnoi_lamp *lamp, int threads, gnoi_packets *packets)
+gno_status gnoi_packets_build(const gnoi_packet_source *source, int threads, gnoi_packets *packets)
 {
+    const gno_scene *scene = source->scene;
     gno_status status = GNO_ERROR_MEMORY;
     job j;
     memset(&j, 0, sizeof j);
     memset(packets, 0, sizeof *packets);
-    packets->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
+    packets->frame = gnoi_frame_make(&source->lamp, scene->prepared.lower, scene->prepared.upper);
     j.scene = scene;
+    j.source = source;
     j.packets = packets;
     j.chunk_count = (scene->prepared.poly_count + CHUNK - 1) / CHUNK;
     j.chunks = gnoi_calloc(scene->context, j.chunk_count, sizeof *j.chunks);
@@ -394,17 +418,29 @@ gno_status gnoi_packets_build(const gno_scene *scene, const gnoi_lamp *lamp, int
 
 void gnoi_packets_free(gno_context *context, gnoi_packets *packets)
 {
+    for (size_t i = 0; packets->blocks && i < packets->block_count; i++)
+        gnoi_free(context, packets->blocks[i].corners, packets->blocks[i].count, sizeof *packets->blocks[i].corners);
+    gnoi_free(context, packets->blocks, packets->block_count, sizeof *packets->blocks);
     gnoi_free(context, packets->packets, packets->packet_count, sizeof *packets->packets);
     gnoi_free(context, packets->nodes, packets->node_count, sizeof *packets->nodes);
+    packets->blocks = NULL;
     packets->packets = NULL;
     packets->nodes = NULL;
-    packets->packet_count = packets->node_count = 0;
+    packets->block_count = packets->packet_count = packets->node_count = 0;
     packets->levels = 0;
+}
+
+size_t gnoi_packets_bytes(const gnoi_packets *packets)
+{
+    size_t bytes = packets->packet_count * sizeof *packets->packets + packets->node_count * sizeof *packets->nodes;
+    for (size_t i = 0; i < packets->block_count; i++)
+        bytes += sizeof *packets->blocks + packets->blocks[i].count * sizeof *packets->blocks[i].corners;
+    return bytes;
 }
 
 /* ---- searching ---------------------------------------------------------------------------------------------------- */
 
-int gnoi_packets_find(gno_context *context, const gnoi_packets *packets, const gnoi_lbox *box, gnoi_packet_list *found)
+int gnoi_packets_find(gno_context *context, const gnoi_packets *packets, const gnoi_lbox *box, int level, gnoi_node_list *found)
 {
     struct { int level; uint32_t node; } stack[GNOI_PACKET * GNOI_PACKET_LEVELS];
     int top = 0;
@@ -413,19 +449,18 @@ int gnoi_packets_find(gno_context *context, const gnoi_packets *packets, const g
     stack[top].level = packets->levels - 1;
     stack[top++].node = 0;
     while (top > 0) {
-        int level = stack[--top].level;
+        int at = stack[--top].level;
         uint32_t node = stack[top].node;
-        unsigned mask = gnoi_eight_meet(&packets->nodes[packets->level_first[level] + node], box);
-        if (level > 0) {
-            for (; mask; mask &= mask - 1) {
-                stack[top].level = level - 1;
-                stack[top++].node = node * GNOI_PACKET + gnoi_lowest_bit(mask);
-            }
-        } else if (mask) {
-            if (found->count == found->capacity &&
-                !gnoi_reserve(context, (void **)&found->items, &found->capacity, found->count + 1, sizeof *found->items))
+        if (at == level) {
+            if (!gnoi_reserve(context, (void **)&found->items, &found->capacity, found->count + 1, sizeof *found->items))
                 return 0;
             found->items[found->count++] = node;
+        } else {
+            unsigned mask = gnoi_eight_meet(&packets->nodes[packets->level_first[at] + node], box);
+            for (; mask; mask &= mask - 1) {
+                stack[top].level = at - 1;
+                stack[top++].node = node * GNOI_PACKET + gnoi_lowest_bit(mask);
+            }
         }
     }
     return 1;
