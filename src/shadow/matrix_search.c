@@ -340,8 +340,28 @@ int gnoi_search_poly(const gnoi_search *search, uint32_t index, gnoi_search_scra
 
 /* ---- putting columns together ---------------------------------------------------------------------------------------- */
 
-#define SHORT_COLUMN 24
+#define SHORT_COLUMN 64
 #define LONG_COLUMN 512
+
+/* Every number goes to where as many are smaller; repeats go to one place. Numbers are below 2^31. */
+VECTOR_CLONES static void rank_column(const uint32_t *casters, size_t count, uint32_t *ranked)
+{
+    int32_t number[SHORT_COLUMN];
+    for (size_t i = 0; i < count; i++) {
+        number[i] = (int32_t)casters[i];
+        ranked[i] = GNOI_NONE;
+    }
+    for (size_t i = count; i % GNOI_EIGHT; i++)
+        number[i] = INT32_MAX;
+    for (size_t i = 0; i < count; i += GNOI_EIGHT) {
+        int32_t rank[GNOI_EIGHT] = {0};
+        for (size_t j = 0; j < count; j++)
+            for (size_t k = 0; k < GNOI_EIGHT; k++)
+                rank[k] += number[j] < number[i + k];
+        for (size_t k = 0; k < GNOI_EIGHT && i + k < count; k++)
+            ranked[rank[k]] = casters[i + k];
+    }
+}
 
 /* By digits; returns 0 when there is no memory for it. */
 static int sort_long_column(gno_context *context, uint32_t *casters, size_t count)
@@ -362,7 +382,7 @@ static int sort_long_column(gno_context *context, uint32_t *casters, size_t coun
 static void sort_column(uint32_t *casters, size_t count)
 {
     static const size_t gaps[] = {1035711, 460316, 204585, 90927, 40412, 17961, 7983, 3548, 1577, 701, 301, 132, 57, 23, 10, 4, 1};
-    for (size_t g = count <= SHORT_COLUMN ? sizeof gaps / sizeof gaps[0] - 1 : 0; g < sizeof gaps / sizeof gaps[0]; g++)
+    for (size_t g = 0; g < sizeof gaps / sizeof gaps[0]; g++)
         for (size_t gap = gaps[g], i = gap; i < count; i++) {
             uint32_t c = casters[i];
             size_t j = i;
@@ -374,12 +394,20 @@ static void sort_column(uint32_t *casters, size_t count)
 
 size_t gnoi_sort_casters(gno_context *context, uint32_t *casters, size_t count)
 {
+    uint32_t ranked[SHORT_COLUMN];
+    const uint32_t *from = casters;
     size_t n = 0;
-    if (count < LONG_COLUMN || !sort_long_column(context, casters, count))
+    if (count <= 1)
+        return count;
+    if (count <= SHORT_COLUMN) {
+        rank_column(casters, count, ranked);
+        from = ranked;
+    } else if (count < LONG_COLUMN || !sort_long_column(context, casters, count)) {
         sort_column(casters, count);
+    }
     for (size_t i = 0; i < count; i++)
-        if (n == 0 || casters[i] != casters[n - 1])
-            casters[n++] = casters[i];
+        if (from[i] != GNOI_NONE && (n == 0 || from[i] != casters[n - 1]))
+            casters[n++] = from[i];
     return n;
 }
 

@@ -14,6 +14,7 @@
 
 #define CHUNK 4096          /* polygons */
 #define RUN_PACKETS (GNOI_RUN / GNOI_PACKET)
+#define LINE (64 / sizeof(float)) /* numbers in a line of the cache */
 #define SIZE_CLASSES 6
 #define CLASS_FACTOR (1.0f / 16) /* each class holds boxes this many times smaller than the one before */
 #define MOST_BINS (SIZE_CLASSES * 6)
@@ -303,11 +304,11 @@ static gno_status fill_packets(void *user, int worker, size_t piece)
     float *corner;
     (void)worker;
     split_runs(places, min_size(GNOI_RUN, j->place_count - piece * GNOI_RUN), packets->frame.parallel, order);
-    block->count = count_corners(j, places, order, end - first);
+    block->count = count_corners(j, places, order, end - first) + LINE;
     block->corners = gnoi_malloc(j->scene->context, block->count, sizeof *block->corners);
     if (!block->corners)
         return GNO_ERROR_MEMORY;
-    corner = block->corners;
+    corner = block->corners + (LINE - (uintptr_t)block->corners / sizeof *corner % LINE) % LINE;
     for (size_t i = first; i < end; i++) {
         const entry *e[GNOI_PACKET];
         for (size_t k = 0; k < GNOI_PACKET; k++) {

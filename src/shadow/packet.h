@@ -34,7 +34,7 @@ typedef struct gnoi_packet {
     uint32_t poly[GNOI_PACKET], source[GNOI_PACKET];
 } gnoi_packet;
 
-/* Corners of the packets of a run. */
+/* Corners of the packets of a run; the first begins where eight numbers do not cross a line of the cache. */
 typedef struct gnoi_packet_block {
     size_t count;
     float *corners;

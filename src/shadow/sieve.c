@@ -130,15 +130,16 @@ INLINE first first_test(const gnoi_sieve *r, const gnoi_packet *p, const gnoi_si
 {
     const float slack = PLANE_BOUND * at->reach, high = r->tolerance + 2 * slack, low = r->tolerance - slack;
     const float outside = low < slack ? low : slack; /* an edge is reached over by less than the tolerance */
-    first v = {mask, 0, mask, mask};
-    flags inner[GNOI_PACKET_CORNERS], all_inner = {0};
+    const flags none = {0};
+    flags inner[GNOI_PACKET_CORNERS], alive = ~none, overlapping = ~none, above = none, within = none;
+    first v = {0, 0, 0, 0};
     for (int i = 0; i < count; i++)
-        inner[i] = ~all_inner;
+        inner[i] = ~none;
     for (int e = 0; e <= r->corner_count; e++) {
         const float nx = r->nx[e], ny = r->ny[e], nz = r->nz[e];
         const float c = r->c[e] - (nx * at->shift[0] + ny * at->shift[1] + nz * at->shift[2]);
         const float touching = (e == 0 ? low : outside) - c, deep = (e == 0 ? high : 2 * slack) - c;
-        flags some = {0}, some_deep = {0}, all_deep = ~some;
+        flags some = none, some_deep = none, all_deep = ~none;
         for (int i = 0; i < count; i++) {
             eight3 q;
             eight d;
@@ -151,16 +152,18 @@ INLINE first first_test(const gnoi_sieve *r, const gnoi_packet *p, const gnoi_si
             all_deep &= in;
             inner[i] &= in;
         }
-        v.alive &= bits_of(&some);
+        alive &= some;
+        v.alive = bits_of(&alive) & mask;
         if (!v.alive)
             return v;
-        v.overlapping &= bits_of(&some_deep);
-        if (e == 0)
-            v.above = bits_of(&all_deep);
+        overlapping &= some_deep;
+        above = e == 0 ? all_deep : above;
     }
     for (int i = 0; i < count; i++)
-        all_inner |= inner[i];
-    v.within = bits_of(&all_inner);
+        within |= inner[i];
+    v.within = bits_of(&within);
+    v.overlapping = bits_of(&overlapping);
+    v.above = bits_of(&above);
     return v;
 }
 
@@ -282,7 +285,7 @@ INLINE gnoi_verdicts test_all(const gnoi_sieve *r, const gnoi_packet *p, const g
     return v;
 }
 
-VECTOR_CLONES gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *r, const gnoi_packet *p, const gnoi_sieve_place *at, unsigned mask)
+VECTOR_CLONES static gnoi_verdicts test(const gnoi_sieve *r, const gnoi_packet *p, const gnoi_sieve_place *at, unsigned mask)
 {
     switch (p->corner_count) {
     case 3: return test_all(r, p, at, mask, 3);
@@ -290,6 +293,9 @@ VECTOR_CLONES gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *r, const gnoi_pack
     default: return test_all(r, p, at, mask, (int)p->corner_count);
     }
 }
+
+/* Apart from the one above, whose versions would be seen from outside of the library. */
+gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *r, const gnoi_packet *p, const gnoi_sieve_place *at, unsigned mask) { return test(r, p, at, mask); }
 
 #else /* nothing is ruled out, nothing settled */
 
