@@ -28,8 +28,10 @@ typedef struct averaging {
     gnoi_preparing *w;
     gnoi_prepared *out;
     unsigned char *marked; /* of vertices */
+    unsigned char *near;   /* of chunks: some corner is at a marked vertex */
     uint32_t *start;       /* of vertices, and two more: their uses */
     use *uses;
+    uint32_t low, high;    /* of the marked vertices */
     double *area;          /* of polygons with a marked vertex, doubled */
     gnoi_normals *pieces;  /* of vertices: their normals */
     size_t piece_count;
@@ -57,6 +59,31 @@ static void mark_run(void *user, size_t first, size_t end)
                 a->marked[out->corner_vertex[k]] = 1;
 }
 
+static void set_range(averaging *a)
+{
+    const unsigned char *first = memchr(a->marked, 1, a->out->vertex_count);
+    uint32_t last = (uint32_t)a->out->vertex_count;
+    a->low = first ? (uint32_t)(first - a->marked) : 1;
+    while (first && !a->marked[last - 1])
+        last--;
+    a->high = first ? last - 1 : 0;
+}
+
+/* Few may be marked of very many: chunks without a corner among them are passed over without looking at their polygons. */
+static gno_status look_chunk(void *user, int worker, size_t chunk)
+{
+    const averaging *a = user;
+    uint32_t outside = 0;
+    (void)worker;
+    a->near[chunk] = 0;
+    if (a->low > a->high)
+        return GNO_OK;
+    for (size_t i = a->w->chunks[chunk].corner; i < a->w->chunks[chunk + 1].corner; i++)
+        outside += a->out->corner_vertex[i] - a->low > a->high - a->low;
+    a->near[chunk] = outside < a->w->chunks[chunk + 1].corner - a->w->chunks[chunk].corner;
+    return GNO_OK;
+}
+
 /* Twice the area inside the outer ring. */
 static double doubled_area(const averaging *a, const gnoi_poly *poly)
 {
@@ -74,7 +101,7 @@ static void count_run(void *user, size_t first, size_t end)
 {
     const averaging *a = user;
     const gnoi_prepared *out = a->out;
-    for (size_t i = first; i < end; i++) {
+    for (size_t i = first; a->near[first / GNOI_CHUNK] && i < end; i++) {
         const gnoi_poly *poly = &out->polys[i];
         int any = 0;
         for (uint32_t k = poly->corner; gnoi_is_smooth(poly) && k < poly->corner + poly->corner_count; k++)
@@ -91,7 +118,7 @@ static void list_run(void *user, size_t first, size_t end)
 {
     const averaging *a = user;
     const gnoi_prepared *out = a->out;
-    for (size_t i = first; i < end; i++)
+    for (size_t i = first; a->near[first / GNOI_CHUNK] && i < end; i++)
         for (uint32_t k = out->polys[i].corner; gnoi_is_smooth(&out->polys[i]) && k < out->polys[i].corner + out->polys[i].corner_count; k++)
             if (a->marked[out->corner_vertex[k]]) {
                 use *u = &a->uses[a->start[out->corner_vertex[k] + 1]++];
@@ -104,6 +131,9 @@ static gno_status list_uses(averaging *a)
 {
     gno_context *context = a->w->scene->context;
     gno_status status = gnoi_over_polygons(context, a->out, a->w->threads, mark_run, a);
+    set_range(a);
+    if (status == GNO_OK)
+        status = gnoi_parallel(context, a->w->threads, a->w->chunk_count, "prepare", look_chunk, a);
     if (status == GNO_OK)
         status = gnoi_over_polygons(context, a->out, a->w->threads, count_run, a);
     if (status != GNO_OK)
@@ -239,7 +269,7 @@ static gno_status place_piece(void *user, int worker, size_t piece)
         memcpy(a->out->normals[a->base[piece]], normals->n, normals->count * sizeof *normals->n);
     for (size_t i = a->start[first]; i < a->start[end]; i++) {
         uint32_t *normal = &a->out->corner_normal[a->uses[i].corner];
-        if ((*normal & LOCAL) && *normal != GNOI_ZERO_NORMAL)
+        if (*normal & LOCAL)
             *normal = a->base[piece] + (*normal & ~LOCAL);
     }
     return GNO_OK;
@@ -270,7 +300,7 @@ static gno_status average(averaging *a)
 {
     gno_context *context = a->w->scene->context;
     gno_status status;
-    if (!a->marked || !a->start || !a->area || !a->pieces || !a->base)
+    if (!a->marked || !a->near || !a->start || !a->area || !a->pieces || !a->base)
         return GNO_ERROR_MEMORY;
     status = list_uses(a);
     if (status == GNO_OK)
@@ -282,9 +312,14 @@ gno_status gnoi_average_normals(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
     const size_t vertices = w->out->vertex_count;
-    averaging a = {w, w->out, NULL, NULL, NULL, NULL, NULL, (vertices + PIECE - 1) / PIECE, NULL};
+    averaging a;
     gno_status status;
+    memset(&a, 0, sizeof a);
+    a.w = w;
+    a.out = w->out;
+    a.piece_count = (vertices + PIECE - 1) / PIECE;
     a.marked = gnoi_calloc(context, vertices, 1);
+    a.near = gnoi_malloc(context, w->chunk_count, 1);
     a.start = gnoi_calloc(context, vertices + 2, sizeof *a.start);
     a.area = gnoi_malloc(context, w->out->poly_count, sizeof *a.area);
     a.pieces = gnoi_calloc(context, a.piece_count, sizeof *a.pieces);
@@ -297,6 +332,7 @@ gno_status gnoi_average_normals(gnoi_preparing *w)
     gnoi_free(context, a.pieces, a.piece_count, sizeof *a.pieces);
     gnoi_free(context, a.area, w->out->poly_count, sizeof *a.area);
     gnoi_free(context, a.start, vertices + 2, sizeof *a.start);
+    gnoi_free(context, a.near, w->chunk_count, 1);
     gnoi_free(context, a.marked, vertices, 1);
     return status;
 }

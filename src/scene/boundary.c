@@ -1,121 +1,157 @@
-/* boundary.c -- see boundary.h. Directed edges are put into a bucket for each vertex (the lower of their two) and cancelled against
- * their reverses there. */
+/* boundary.c -- see boundary.h.
+ *
+ * Most edges cancel, and so do all edges around most vertices. Every directed edge belongs to the lower of its two vertices: it adds a
+ * pseudo-random number of the higher vertex there, or takes it away, by its direction. Where the sum is zero all edges of the vertex cancel
+ * (by chance only once in 2^64 where they do not). The few edges of other vertices are listed, sorted by their vertices, and cancelled
+ * against their reverses one by one.
+ */
 #include "scene/boundary.h"
+#include "base/sort.h"
 
-/* Half an edge in the bucket of its lower vertex. */
+#define FEW 16 /* of less than this share of all polygons all edges are listed without sums */
+
+/* A directed edge of the lower vertex. */
 typedef struct half_edge {
-    uint32_t other; /* the higher vertex */
+    uint32_t low, other; /* the higher vertex */
     uint32_t poly;
-    uint32_t up;    /* 1: runs from the lower vertex to the higher */
+    uint32_t up;         /* 1: runs from the lower vertex to the higher */
 } half_edge;
 
-typedef struct buckets {
+typedef struct finding {
     gno_context *context;
-    size_t vertex_count, half_count;
-    uint32_t *start; /* vertex_count + 1 */
+    const gnoi_prepared *prep;
+    const unsigned char *taken;
+    size_t count;
+    uint64_t *sums; /* of vertices; NULL: all edges are listed */
+    size_t half_count, half_capacity;
     half_edge *halves;
-} buckets;
+} finding;
 
-static void buckets_free(buckets *b)
+static uint64_t number_of(uint32_t vertex)
 {
-    gnoi_free(b->context, b->start, b->vertex_count + 2, sizeof *b->start);
-    gnoi_free(b->context, b->halves, b->half_count, sizeof *b->halves);
+    uint64_t x = ((uint64_t)vertex + 1) * 0x9e3779b97f4a7c15u;
+    x = (x ^ x >> 32) * 0x94d049bb133111ebu;
+    return x ^ x >> 29;
 }
 
-/* Counts every directed edge of the polygon, or puts it into its bucket. */
-static void visit_edges(const gnoi_prepared *prep, uint32_t index, buckets *b, int fill)
+static const uint32_t *corners_of(const finding *f, size_t i, uint32_t *count)
 {
-    const gnoi_poly *poly = &prep->polys[index];
-    const uint32_t *corner = prep->corner_vertex + poly->corner;
-    for (uint32_t k = 0; k < poly->corner_count; k++) {
-        uint32_t v = corner[k], w = corner[k + 1 < poly->corner_count ? k + 1 : 0], low = v < w ? v : w;
-        half_edge *h;
-        if (v == w)
-            continue;
-        if (!fill) {
-            b->start[low + 2]++;
-            b->half_count++;
-            continue;
-        }
-        h = &b->halves[b->start[low + 1]++];
-        h->other = v < w ? w : v;
-        h->poly = index;
-        h->up = v < w;
+    const gnoi_poly *cap = &f->prep->polys[i];
+    if (i < f->prep->poly_count)
+        return gnoi_corners_of(f->prep, i, count);
+    *count = cap->corner_count;
+    return f->prep->corner_vertex + cap->corner;
+}
+
+/* Adds the edges of polygon i to the sums. */
+static void add_edges(const finding *f, size_t i)
+{
+    uint32_t count, from;
+    const uint32_t *corner = corners_of(f, i, &count);
+    uint64_t h = number_of(from = corner[count - 1]);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t to = corner[k];
+        uint64_t g = number_of(to);
+        f->sums[from < to ? from : to] += from < to ? g : from > to ? 0 - h : 0;
+        from = to;
+        h = g;
     }
 }
 
-/* Polygons are visited in their own order, which is that of neighbours in space. */
-static int fill_buckets(const gnoi_prepared *prep, const unsigned char *taken, size_t count, buckets *b)
+/* Lists those edges of polygon i whose vertices do not cancel; 0 without memory. */
+static int list_edges(finding *f, size_t i)
 {
-    b->vertex_count = prep->vertex_count;
-    b->start = gnoi_calloc(b->context, b->vertex_count + 2, sizeof *b->start);
-    if (!b->start)
-        return 0;
-    for (uint32_t i = 0; i < count; i++)
-        if (taken[i])
-            visit_edges(prep, i, b, 0);
-    for (size_t v = 2; v < b->vertex_count + 2; v++)
-        b->start[v] += b->start[v - 1];
-    if (gnoi_stopped(b->context))
-        return 0;
-    b->halves = gnoi_malloc(b->context, b->half_count, sizeof *b->halves);
-    if (!b->halves)
-        return 0;
-    for (uint32_t i = 0; i < count; i++)
-        if (taken[i])
-            visit_edges(prep, i, b, 1);
-    return !gnoi_stopped(b->context);
+    uint32_t count;
+    const uint32_t *corner = corners_of(f, i, &count);
+    for (uint32_t k = 0; k < count; k++) {
+        uint32_t v = corner[k], w = corner[k + 1 < count ? k + 1 : 0], low = v < w ? v : w;
+        half_edge *h;
+        if (v == w || (f->sums && f->sums[low] == 0))
+            continue;
+        if (!gnoi_reserve(f->context, (void **)&f->halves, &f->half_capacity, f->half_count + 1, sizeof *f->halves))
+            return 0;
+        h = &f->halves[f->half_count++];
+        h->low = low;
+        h->other = v < w ? w : v;
+        h->poly = (uint32_t)i;
+        h->up = v < w;
+    }
+    return 1;
 }
 
-/* By the higher vertex. Buckets hold a handful, but for the tips of large fans: Shell's gaps keep those from growing quadratic. */
-static void sort_halves(half_edge *h, size_t count)
+static int list_halves(finding *f)
 {
-    static const size_t gaps[] = {29524, 9841, 3280, 1093, 364, 121, 40, 13, 4, 1};
-    for (size_t g = count < 5 ? sizeof gaps / sizeof *gaps - 1 : 0; g < sizeof gaps / sizeof *gaps; g++)
-        for (size_t i = gaps[g]; i < count; i++) {
-            half_edge v = h[i];
-            size_t k = i;
-            for (; k >= gaps[g] && h[k - gaps[g]].other > v.other; k -= gaps[g])
-                h[k] = h[k - gaps[g]];
-            h[k] = v;
-        }
+    size_t some = 0;
+    for (size_t i = 0; i < f->count; i++)
+        some += f->taken[i] != 0;
+    if (some > f->count / FEW) {
+        f->sums = gnoi_calloc(f->context, f->prep->vertex_count, sizeof *f->sums);
+        if (!f->sums)
+            return 0;
+    }
+    for (size_t i = 0; i < f->count && f->sums; i++)
+        if (f->taken[i])
+            add_edges(f, i);
+    if (gnoi_stopped(f->context))
+        return 0;
+    for (size_t i = 0; i < f->count; i++)
+        if (f->taken[i] && !list_edges(f, i))
+            return 0;
+    return !gnoi_stopped(f->context);
+}
+
+/* Halves by lower, then higher vertex, in the order of polygons; NULL without memory. The order is of half_count numbers and scratch. */
+static gnoi_keyed *sort_halves(const finding *f)
+{
+    gnoi_keyed *order = gnoi_malloc(f->context, 2 * f->half_count, sizeof *order);
+    for (size_t i = 0; order && i < f->half_count; i++) {
+        order[i].key = f->halves[i].other;
+        order[i].value = (uint32_t)i;
+    }
+    if (!order)
+        return NULL;
+    gnoi_sort(order, order + f->half_count, f->half_count);
+    for (size_t i = 0; i < f->half_count; i++)
+        order[i].key = f->halves[order[i].value].low;
+    gnoi_sort(order, order + f->half_count, f->half_count);
+    return order;
 }
 
 /* Keeps what a run of halves between the same two vertices leaves over. */
-static int keep_rest(gnoi_boundary *c, gno_context *context, uint32_t low, const half_edge *h, size_t count)
+static int keep_rest(const finding *f, const gnoi_keyed *run, size_t count, gnoi_boundary *c)
 {
     size_t up = 0, rest;
     uint32_t way;
     for (size_t i = 0; i < count; i++)
-        up += h[i].up;
+        up += f->halves[run[i].value].up;
     way = 2 * up > count;
     rest = way ? 2 * up - count : count - 2 * up;
-    if (!gnoi_reserve(context, (void **)&c->edges, &c->capacity, c->count + rest, sizeof *c->edges))
+    if (!gnoi_reserve(f->context, (void **)&c->edges, &c->capacity, c->count + rest, sizeof *c->edges))
         return 0;
-    for (size_t i = 0; i < count && rest > 0; i++)
-        if (h[i].up == way) {
+    for (size_t i = 0; i < count && rest > 0; i++) {
+        const half_edge *h = &f->halves[run[i].value];
+        if (h->up == way) {
             gnoi_boundary_edge *e = &c->edges[c->count++];
-            e->from = way ? low : h[i].other;
-            e->to = way ? h[i].other : low;
-            e->poly = h[i].poly;
+            e->from = way ? h->low : h->other;
+            e->to = way ? h->other : h->low;
+            e->poly = h->poly;
             rest--;
         }
+    }
     return 1;
 }
 
-static int cancel(gnoi_boundary *c, const buckets *b)
+static int cancel(const finding *f, const gnoi_keyed *order, gnoi_boundary *c)
 {
-    for (uint32_t v = 0; v < b->vertex_count; v++) {
-        half_edge *h = b->halves + b->start[v];
-        size_t count = b->start[v + 1] - b->start[v], run;
-        sort_halves(h, count);
-        for (size_t i = 0; i < count; i += run) {
-            for (run = 1; i + run < count && h[i + run].other == h[i].other; run++)
-                ;
-            if (!keep_rest(c, b->context, v, h + i, run))
-                return 0;
+    size_t run;
+    for (size_t i = 0; i < f->half_count; i += run) {
+        const half_edge *h = &f->halves[order[i].value];
+        for (run = 1; i + run < f->half_count; run++) {
+            const half_edge *next = &f->halves[order[i + run].value];
+            if (next->low != h->low || next->other != h->other)
+                break;
         }
-        if (gnoi_stopped_at(b->context, v))
+        if (!keep_rest(f, order + i, run, c) || gnoi_stopped_at(f->context, i))
             return 0;
     }
     return 1;
@@ -123,11 +159,15 @@ static int cancel(gnoi_boundary *c, const buckets *b)
 
 int gnoi_boundary_find(gno_context *context, const gnoi_prepared *prep, const unsigned char *taken, size_t count, gnoi_boundary *boundary)
 {
-    buckets b = {0};
-    int good;
-    b.context = context;
-    good = fill_buckets(prep, taken, count, &b) && cancel(boundary, &b);
-    buckets_free(&b);
+    finding f = {context, prep, taken, count, NULL, 0, 0, NULL};
+    gnoi_keyed *order = NULL;
+    int good = list_halves(&f);
+    gnoi_free(context, f.sums, prep->vertex_count, sizeof *f.sums);
+    if (good)
+        order = sort_halves(&f);
+    good = order && cancel(&f, order, boundary);
+    gnoi_free(context, order, 2 * f.half_count, sizeof *order);
+    gnoi_free(context, f.halves, f.half_capacity, sizeof *f.halves);
     return good;
 }
 

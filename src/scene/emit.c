@@ -1,14 +1,17 @@
 /* emit.c -- the prepared polygons, in the order of order.c.
  *
- * Place in the data flow: order.c -> rings and corners, which still name the scene's vertices and normals -> number.c -> records: planes
+ * Place in the data flow: order.c, weld.c -> rings and corners, which still name the scene's vertices and normals -> number.c -> records: planes
  * from positions that now lie in the order in which they are asked for, triangulations -> normals.c.
  * Chunks of polygons are counted, which gives each chunk its place in every array, and then filled side by side.
  * Invariants: every prepared ring has three corners or more; a polygon's rings and corners follow those of the one before.
  */
+#include "base/fetch.h"
 #include "base/parallel.h"
 #include "scene/prepare.h"
 
 #include <string.h>
+
+#define AHEAD 16 /* polygons */
 
 /* Where a chunk stands in the arrays that it fills. */
 typedef struct place {
@@ -73,7 +76,7 @@ static size_t kept_triangles(const gnoi_preparing *w, size_t i, size_t rings, si
 static gno_status count_chunk(void *user, int worker, size_t chunk)
 {
     const gnoi_preparing *w = user;
-    gnoi_chunk sum = {0, 0, 0, 0};
+    gnoi_chunk sum = {0, 0, 0, 0, 0};
     (void)worker;
     for (size_t i = chunk * GNOI_CHUNK, end = chunk_end(w, chunk); i < end; i++) {
         size_t rings, corners;
@@ -89,7 +92,7 @@ static gno_status count_chunk(void *user, int worker, size_t chunk)
 /* Counts become what is before each chunk. */
 static void sum_chunks(const gnoi_preparing *w)
 {
-    gnoi_chunk sum = {0, 0, 0, 0};
+    gnoi_chunk sum = {0, 0, 0, 0, 0};
     for (size_t k = 0; k <= w->chunk_count; k++) {
         gnoi_chunk count = w->chunks[k];
         w->chunks[k] = sum;
@@ -101,38 +104,78 @@ static void sum_chunks(const gnoi_preparing *w)
 
 /* ---- corners -------------------------------------------------------------------------------------------------------- */
 
-/* Copies scene corner `from` to prepared corner `to`. */
-static void emit_corner(const gnoi_preparing *w, size_t from, size_t to, int uses_normal)
+/* Copies scene corners [from,to) to prepared corner `at` and on. Returns whether one of them is to have a normal and has none. */
+static int emit_corners(const gnoi_preparing *w, size_t from, size_t to, size_t at, unsigned kind)
 {
     const gno_scene *s = w->scene;
-    gnoi_prepared *out = w->out;
-    out->corner_vertex[to] = (uint32_t)s->corner_vertex[from];
+    const gnoi_prepared *out = w->out;
+    int open = 0;
+    for (size_t i = from; i < to; i++)
+        out->corner_vertex[at + i - from] = w->same[s->corner_vertex[i]];
     if (out->corner_normal)
-        out->corner_normal[to] = uses_normal ? (uint32_t)s->corner_normal[from] : GNOI_NONE;
+        for (size_t i = from; i < to; i++) {
+            uint32_t normal = kind & GNOI_USES_NORMALS ? (uint32_t)s->corner_normal[i] : GNOI_NONE;
+            out->corner_normal[at + i - from] = normal;
+            open |= normal == GNOI_NONE;
+        }
     if (out->corner_texcoord)
-        out->corner_texcoord[to] = (uint32_t)s->corner_texcoord[from];
+        for (size_t i = from; i < to; i++)
+            out->corner_texcoord[at + i - from] = (uint32_t)s->corner_texcoord[i];
+    return open && (kind & GNOI_IS_SMOOTH);
 }
 
-static void emit_rings(const gnoi_preparing *w, size_t p, place *at)
+static int emit_rings(const gnoi_preparing *w, size_t p, place *at)
 {
     const gno_scene *s = w->scene;
-    int uses_normals = (w->kinds[p] & GNOI_USES_NORMALS) != 0;
+    int open = 0;
     for (unsigned ring = s->polygon_start[p], last = s->polygon_start[p + 1]; ring < last; ring++) {
         unsigned from = s->ring_start[ring], to = s->ring_start[ring + 1];
         if (to - from < 3)
             continue;
         w->out->ring_corner[at->ring++] = (uint32_t)at->corner;
-        for (unsigned corner = from; corner < to; corner++)
-            emit_corner(w, corner, at->corner++, uses_normals);
+        open |= emit_corners(w, from, to, at->corner, w->kinds[p]);
+        at->corner += to - from;
     }
+    return open;
 }
 
-static void emit_split(const gnoi_preparing *w, size_t triangle, place *at)
+/* The first corner of a polygon of one ring. */
+static size_t corner_of(const gnoi_preparing *w, size_t p)
 {
-    int uses_normals = (w->kinds[w->splits.source[triangle]] & GNOI_USES_NORMALS) != 0;
+    uint32_t block = w->blocks[p / GNOI_BLOCK];
+    return block != GNOI_NONE ? block + 3 * (p % GNOI_BLOCK) : w->scene->ring_start[w->scene->polygon_start[p]];
+}
+
+static int emit_triangle(const gnoi_preparing *w, size_t p, place *at)
+{
+    const size_t from = corner_of(w, p);
+    int open = emit_corners(w, from, from + 3, at->corner, w->kinds[p]);
     w->out->ring_corner[at->ring++] = (uint32_t)at->corner;
-    for (int k = 0; k < 3; k++)
-        emit_corner(w, w->splits.corner[triangle][k], at->corner++, uses_normals);
+    at->corner += 3;
+    return open;
+}
+
+static int emit_split(const gnoi_preparing *w, size_t triangle, place *at)
+{
+    unsigned kind = w->kinds[w->splits.source[triangle]];
+    int open = 0;
+    w->out->ring_corner[at->ring++] = (uint32_t)at->corner;
+    for (int k = 0; k < 3; k++) {
+        size_t corner = w->splits.corner[triangle][k];
+        open |= emit_corners(w, corner, corner + 1, at->corner++, kind);
+    }
+    return open;
+}
+
+/* Polygons lie anywhere in the scene's arrays: what is needed a little later is fetched in good time. */
+static void fetch(const gnoi_preparing *w, size_t i)
+{
+    size_t number;
+    if (i < w->item_count && is_polygon(w, i, &number)) {
+        size_t corner = corner_of(w, number);
+        FETCH(&w->scene->corner_vertex[corner]);
+        FETCH(&w->scene->corner_normal[corner]);
+    }
 }
 
 static gno_status corner_chunk(void *user, int worker, size_t chunk)
@@ -143,13 +186,13 @@ static gno_status corner_chunk(void *user, int worker, size_t chunk)
     int open = 0;
     (void)worker;
     for (size_t i = chunk * GNOI_CHUNK, end = chunk_end(w, chunk); i < end; i++) {
-        size_t corner = at.corner;
-        if (is_polygon(w, i, &number))
-            emit_rings(w, number, &at);
+        fetch(w, i + AHEAD);
+        if (!is_polygon(w, i, &number))
+            open |= emit_split(w, number, &at);
+        else if (w->kinds[number] & GNOI_IS_TRIANGLE)
+            open |= emit_triangle(w, number, &at);
         else
-            emit_split(w, number, &at);
-        for (; w->out->corner_normal && corner < at.corner; corner++)
-            open |= w->out->corner_normal[corner] == GNOI_NONE && (w->kinds[source_of(w, i)] & GNOI_IS_SMOOTH);
+            open |= emit_rings(w, number, &at);
     }
     w->chunks[chunk].open = open;
     return GNO_OK;
@@ -230,7 +273,7 @@ static void set_plane(const gnoi_preparing *w, size_t i, gnoi_poly *poly)
     const uint32_t *vertex = out->corner_vertex + poly->corner;
     size_t number;
     if (!is_polygon(w, i, &number) || (w->kinds[number] & GNOI_IS_TRIANGLE))
-        gnoi_measure_triangle(positions, vertex, poly);
+        gnoi_set_triangle(positions, vertex, poly);
     else
         gnoi_measure_ring(positions, vertex, out->ring_corner[poly->ring + 1] - poly->corner, poly);
 }
@@ -273,15 +316,18 @@ static gno_status polygon_chunk(void *user, int worker, size_t chunk)
     gnoi_prepared *out = w->out;
     place at = start_of(&w->chunks[chunk]);
     size_t end = chunk_end(w, chunk), seam = chunk * GNOI_CHUNK;
+    int closes = 1;
     gno_status status = GNO_OK;
     (void)worker;
     for (size_t i = chunk * GNOI_CHUNK; i < end && !status; i++) {
         status = emit_polygon(w, i, &at);
+        closes &= out->polys[i].opaque && out->polys[i].two_sided && out->polys[i].ring_count == 1;
         if (is_seam(out, &out->polys[i], out->chunk_vertex[chunk]))
             out->seams[seam++] = (uint32_t)i;
         if (gnoi_stopped_at(w->scene->context, i))
             status = GNO_ERROR_CANCELLED;
     }
+    w->chunks[chunk].closes = closes;
     if (seam < end)
         out->seams[seam] = GNOI_NONE;
     return status;

@@ -13,7 +13,7 @@
 
 #include <string.h>
 
-#define CHUNK 8192 /* polygons a piece: some 0.3 ms of work */
+#define CHUNK 8192 /* polygons a piece: some 0.3 ms of work; a multiple of GNOI_BLOCK */
 
 typedef struct bounds {
     double lower[3], upper[3];
@@ -28,6 +28,7 @@ typedef struct chunk {
 typedef struct measuring {
     const gno_scene *scene;
     unsigned char *kinds;
+    uint32_t *blocks; /* or NULL */
     chunk *chunks;
     unsigned char *material_flags, *object_flags; /* GNOI_IS_SMOOTH, GNOI_USES_NORMALS, DECIDES */
 } measuring;
@@ -75,15 +76,6 @@ static double largest_side(const bounds *box)
 
 /* ---- planes ---------------------------------------------------------------------------------------------------- */
 
-static void set_plane(gnoi_poly *poly, vec3 normal, double length, vec3 through)
-{
-    vec3 n = v3_scale(normal, 1 / length);
-    poly->n[0] = n.x;
-    poly->n[1] = n.y;
-    poly->n[2] = n.z;
-    poly->d = -v3_dot(n, through);
-}
-
 /* Twice the area is `length`. Perimeter squared is at most 3 times the sum of squared sides, which spares the roots of
  * nearly every triangle. */
 static int triangle_has_area(double length, double side0, double side1, double side2)
@@ -97,17 +89,20 @@ static int triangle_has_area(double length, double side0, double side1, double s
     return length > bound * perimeter * perimeter;
 }
 
-int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
+static inline int triangle_is_good(const double (*positions)[3], const uint32_t vertex[3])
 {
     vec3 a = v3_from(positions[vertex[0]]), b = v3_from(positions[vertex[1]]), c = v3_from(positions[vertex[2]]);
     vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), bc = v3_sub(c, b);
-    vec3 normal = v3_cross(ab, ac);
-    double length = v3_length(normal);
-    if (!triangle_has_area(length, v3_dot(ab, ab), v3_dot(ac, ac), v3_dot(bc, bc))) {
-        return 0;
+    return triangle_has_area(v3_length(v3_cross(ab, ac)), v3_dot(ab, ab), v3_dot(ac, ac), v3_dot(bc, bc));
+}
+
+int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
+{
+    int good = triangle_is_good(positions, vertex);
+    if (good) {
+        gnoi_set_triangle(positions, vertex, poly);
     }
-    set_plane(poly, normal, length, v3_scale(v3_add(a, v3_add(b, c)), 1.0 / 3));
-    return 1;
+    return good;
 }
 
 int gnoi_measure_ring(const double (*positions)[3], const uint32_t *vertex, size_t count, gnoi_poly *poly)
@@ -126,7 +121,7 @@ int gnoi_measure_ring(const double (*positions)[3], const uint32_t *vertex, size
     if (!(length > 2 * GNOI_DEGENERATE * perimeter * perimeter)) {
         return 0;
     }
-    set_plane(poly, normal, length, v3_mad(first, sum, 1.0 / (double)count));
+    gnoi_set_plane(poly, normal, length, v3_mad(first, sum, 1.0 / (double)count));
     return 1;
 }
 
@@ -173,12 +168,9 @@ static gnoi_kind measure_any(const gno_scene *scene, size_t p, bounds *box)
     return off > GNOI_PLANAR * largest_side(&own) ? GNOI_BENT : GNOI_KEPT;
 }
 
-/* As gnoi_measure_triangle, without the plane. */
 static gnoi_kind judge_triangle(const gno_scene *scene, const uint32_t *vertex, bounds *box)
 {
-    vec3 a = v3_from(scene->positions[vertex[0]]), b = v3_from(scene->positions[vertex[1]]), c = v3_from(scene->positions[vertex[2]]);
-    vec3 ab = v3_sub(b, a), ac = v3_sub(c, a), bc = v3_sub(c, b);
-    if (!triangle_has_area(v3_length(v3_cross(ab, ac)), v3_dot(ab, ab), v3_dot(ac, ac), v3_dot(bc, bc))) {
+    if (!triangle_is_good((const double(*)[3])scene->positions, vertex)) {
         return GNOI_EMPTY;
     }
     for (int i = 0; i < 3; i++) {
@@ -211,6 +203,18 @@ static unsigned flags_of(const measuring *m, size_t p)
     return shading & GNOI_IS_SMOOTH ? GNOI_IS_SMOOTH | (object & GNOI_USES_NORMALS) : 0;
 }
 
+static void set_blocks(const measuring *m, size_t first, size_t end)
+{
+    const gno_scene *scene = m->scene;
+    for (size_t p = first; p < end; p += GNOI_BLOCK) {
+        unsigned all = GNOI_IS_TRIANGLE;
+        for (size_t i = p; i < p + GNOI_BLOCK && i < end; i++) {
+            all &= m->kinds[i];
+        }
+        m->blocks[p / GNOI_BLOCK] = all ? scene->ring_start[scene->polygon_start[p]] : GNOI_NONE;
+    }
+}
+
 static gno_status measure_chunk(void *user, int worker, size_t piece)
 {
     const measuring *m = user;
@@ -232,6 +236,9 @@ static gno_status measure_chunk(void *user, int worker, size_t piece)
         sums.measures.smooth |= kind != GNOI_EMPTY && (flags & GNOI_IS_SMOOTH);
     }
     *c = sums;
+    if (m->blocks) {
+        set_blocks(m, piece * CHUNK, end);
+    }
     return GNO_OK;
 }
 
@@ -285,7 +292,7 @@ static void add_chunks(gno_scene *scene, const measuring *m, size_t pieces, gnoi
     }
 }
 
-gno_status gnoi_measure_scene(gno_scene *scene, int threads, unsigned char *kinds, gnoi_measures *measures)
+gno_status gnoi_measure_scene(gno_scene *scene, int threads, unsigned char *kinds, uint32_t *blocks, gnoi_measures *measures)
 {
     gno_context *context = scene->context;
     size_t pieces = (scene->polygon_count + CHUNK - 1) / CHUNK;
@@ -294,6 +301,7 @@ gno_status gnoi_measure_scene(gno_scene *scene, int threads, unsigned char *kind
     memset(measures, 0, sizeof *measures);
     m.scene = scene;
     m.kinds = kinds;
+    m.blocks = blocks;
     m.chunks = gnoi_malloc(context, pieces, sizeof *m.chunks);
     m.material_flags = gnoi_malloc(context, scene->material_count, 1);
     m.object_flags = gnoi_malloc(context, scene->object_count, 1);

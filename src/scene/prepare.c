@@ -4,6 +4,7 @@
  * Invariant: what comes out does not depend on the number of threads.
  */
 #include "scene/prepare.h"
+#include "scene/weld.h"
 
 #include <string.h>
 
@@ -18,6 +19,7 @@ void gnoi_prepared_free(gno_context *context, gnoi_prepared *prepared)
     gnoi_free(context, prepared->vertex_solid, prepared->vertex_capacity, sizeof *prepared->vertex_solid);
     gnoi_free(context, prepared->positions, prepared->vertex_capacity, sizeof *prepared->positions);
     gnoi_free(context, prepared->chunk_vertex, prepared->chunk_count + 1, sizeof *prepared->chunk_vertex);
+    gnoi_free(context, prepared->chunk_corner, prepared->chunk_count + 1, sizeof *prepared->chunk_corner);
     gnoi_free(context, prepared->seams, prepared->seam_capacity, sizeof *prepared->seams);
     gnoi_free(context, prepared->normals, prepared->normal_capacity, sizeof *prepared->normals);
     gnoi_free(context, prepared->triangles, prepared->triangle_capacity, sizeof *prepared->triangles);
@@ -28,22 +30,35 @@ static void free_work(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
     gnoi_free(context, w->kinds, w->scene->polygon_count, 1);
+    gnoi_free(context, w->blocks, gnoi_block_count(w->scene), sizeof *w->blocks);
     gnoi_splits_free(context, &w->splits);
     gnoi_free(context, w->order, w->item_count, sizeof *w->order);
     gnoi_free(context, w->chunks, w->chunk_count + 1, sizeof *w->chunks);
+    gnoi_free(context, w->same, w->scene->vertex_count, sizeof *w->same);
     gnoi_free(context, w->vertex_number, w->scene->vertex_count, sizeof *w->vertex_number);
     gnoi_free(context, w->normal_source, w->normal_source_count, sizeof *w->normal_source);
 }
 
+static gno_status weld(gnoi_preparing *w)
+{
+    gno_scene *scene = w->scene;
+    w->same = gnoi_malloc(scene->context, scene->vertex_count, sizeof *w->same);
+    if (!w->same)
+        return GNO_ERROR_MEMORY;
+    return gnoi_weld(scene->context, w->threads, scene->vertex_count, (const double(*)[3])scene->positions, w->same);
+}
+
 static gno_status gather_polygons(gnoi_preparing *w)
 {
-    gno_status status = gnoi_measure_scene(w->scene, w->threads, w->kinds, &w->measures);
+    gno_status status = gnoi_measure_scene(w->scene, w->threads, w->kinds, w->blocks, &w->measures);
     w->out->problems.degenerate = w->measures.empty;
     w->out->problems.non_planar = w->measures.split;
     if (status == GNO_OK)
         status = gnoi_split_bent(w);
     if (status == GNO_OK)
         status = gnoi_order_items(w);
+    if (status == GNO_OK)
+        status = weld(w);
     if (status == GNO_OK)
         status = gnoi_emit_corners(w);
     if (status == GNO_OK)
@@ -56,7 +71,8 @@ static gno_status prepare(gnoi_preparing *w)
     gno_context *context = w->scene->context;
     gno_status status = GNO_ERROR_MEMORY;
     w->kinds = gnoi_malloc(context, w->scene->polygon_count, 1);
-    if (w->kinds)
+    w->blocks = gnoi_malloc(context, gnoi_block_count(w->scene), sizeof *w->blocks);
+    if (w->kinds && w->blocks)
         status = gather_polygons(w);
     if (status == GNO_OK && w->measures.smooth)
         status = gnoi_prepare_normals(w);

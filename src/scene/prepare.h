@@ -1,8 +1,8 @@
 /* prepare.h -- the steps of preparing a scene, in the order they run.
  *
  * Place in the data flow: gno_scene -> measure.c (which polygons have area and are planar; bounds) -> split.c (triangles of those that
- * are not planar) -> order.c (what is left, as it lies in space) -> emit.c (rings and corners in that order) -> weld.c, number.c
- * (vertices and normals numbered in the order of first use) -> emit.c (records: planes, triangulations) -> normals.c, average.c
+ * are not planar) -> order.c (what is left, as it lies in space) -> weld.c (vertices at one place), emit.c (rings and corners in that
+ * order) -> number.c (vertices and normals numbered in the order of first use) -> emit.c (records: planes, triangulations) -> normals.c, average.c
  * (vertex normals of smooth polygons) -> details.c -> solid.c (connected parts, which of them are closed) -> cap.c (closes those that
  * stand open on a plane) -> gnoi_prepared.
  * Steps return a status, with a message only for limits; prepare.c writes the others.
@@ -32,6 +32,9 @@ typedef struct gnoi_measures {
     int smooth;          /* some polygon that is not empty is smooth */
 } gnoi_measures;
 
+/* Source polygons in a run whose corners are found from one number: scenes of triangles spare two ways through memory. */
+#define GNOI_BLOCK 64
+
 /* Triangles of split polygons, as scene corners (indices into scene->corner_vertex and its like), by rising source. Those without
  * area come to no prepared polygon. */
 typedef struct gnoi_splits {
@@ -44,7 +47,8 @@ typedef struct gnoi_splits {
 /* GNOI_CHUNK ordered polygons: what comes before them. */
 typedef struct gnoi_chunk {
     size_t ring, corner, triangle;
-    int open; /* some smooth corner has no normal from the file */
+    int open;   /* some smooth corner has no normal from the file */
+    int closes; /* all polygons are opaque, seen from both sides and without holes */
 } gnoi_chunk;
 
 /* A preparation at work. What steps leave for later ones is freed at its end. */
@@ -53,6 +57,7 @@ typedef struct gnoi_preparing {
     gnoi_prepared *out; /* of the scene */
     int threads;
     unsigned char *kinds; /* of source polygons */
+    uint32_t *blocks;     /* of GNOI_BLOCK source polygons: their first corner where all are triangles, else GNOI_NONE */
     gnoi_measures measures;
     gnoi_splits splits;
     uint32_t *order;      /* items: a source polygon, or polygon_count and the number of a split triangle more */
@@ -60,20 +65,36 @@ typedef struct gnoi_preparing {
     int mapped;           /* a material asks for texture coordinates, and there are some */
     gnoi_chunk *chunks;   /* chunk_count + 1: the last holds the totals */
     size_t chunk_count;
-    uint32_t *vertex_number; /* of scene vertices: the prepared vertex at that place, or GNOI_NONE */
+    uint32_t *same;          /* of scene vertices: the first one at the place */
+    uint32_t *vertex_number; /* of those: the prepared vertex, or GNOI_NONE where there is none */
     uint32_t *normal_source; /* of prepared normals: the scene's */
     size_t normal_source_count;
-    int zero_normals;        /* some corner's file normal is zero: it has GNOI_ZERO_NORMAL in place of a number */
 } gnoi_preparing;
 
-#define GNOI_ZERO_NORMAL 0xfffffffeu
+/* measure.c: fills kinds (of source polygons), measures and, unless it is NULL, blocks; and the bounds and scale of the prepared scene. */
+gno_status gnoi_measure_scene(gno_scene *scene, int threads, unsigned char *kinds, uint32_t *blocks, gnoi_measures *measures);
+static inline size_t gnoi_block_count(const gno_scene *scene) { return (scene->polygon_count + GNOI_BLOCK - 1) / GNOI_BLOCK; }
 
-/* measure.c: fills kinds (of source polygons) and measures, and the bounds and scale of the prepared scene. */
-gno_status gnoi_measure_scene(gno_scene *scene, int threads, unsigned char *kinds, gnoi_measures *measures);
-
-/* Unit normal and offset of the plane of a triangle, and of one ring; 0 when it has no area. positions: of whatever `vertex` indexes. */
+/* Unit normal and offset of the plane of a triangle, and of one ring; 0 when it has no area. positions: of whatever `vertex` indexes.
+ * gnoi_set_triangle: of a triangle that is known to have area. */
 int gnoi_measure_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly);
 int gnoi_measure_ring(const double (*positions)[3], const uint32_t *vertex, size_t count, gnoi_poly *poly);
+
+static inline void gnoi_set_plane(gnoi_poly *poly, vec3 normal, double length, vec3 through)
+{
+    vec3 n = v3_scale(normal, 1 / length);
+    poly->n[0] = n.x;
+    poly->n[1] = n.y;
+    poly->n[2] = n.z;
+    poly->d = -v3_dot(n, through);
+}
+
+static inline void gnoi_set_triangle(const double (*positions)[3], const uint32_t vertex[3], gnoi_poly *poly)
+{
+    vec3 a = v3_from(positions[vertex[0]]), b = v3_from(positions[vertex[1]]), c = v3_from(positions[vertex[2]]);
+    vec3 normal = v3_cross(v3_sub(b, a), v3_sub(c, a));
+    gnoi_set_plane(poly, normal, v3_length(normal), v3_scale(v3_add(a, v3_add(b, c)), 1.0 / 3));
+}
 
 /* split.c */
 gno_status gnoi_split_bent(gnoi_preparing *w);
@@ -82,11 +103,12 @@ void gnoi_splits_free(gno_context *context, gnoi_splits *splits);
 /* order.c */
 gno_status gnoi_order_items(gnoi_preparing *w);
 
-/* emit.c: first ring_corner and the corner arrays, with the scene's vertices and normals; once these are numbered the records. */
+/* emit.c: first ring_corner and the corner arrays, with the scene's vertices (the first of each place) and normals; once these are
+ * numbered the records. */
 gno_status gnoi_emit_corners(gnoi_preparing *w);
 gno_status gnoi_emit_polygons(gnoi_preparing *w);
 
-/* number.c: fills vertex_number, positions, normal_source; corners name prepared vertices and normals. */
+/* number.c: fills vertex_number, positions, chunk_vertex, chunk_corner, normal_source; corners name prepared vertices and normals. */
 gno_status gnoi_number_corners(gnoi_preparing *w);
 
 /* normals.c: fills normals and gives every corner of a smooth polygon one: the file's normals as unit vectors, averages (average.c),

@@ -406,7 +406,7 @@ gno_status gno_scene_find_problems(gno_scene *scene, int threads, gno_problem_fn
     if (!allocate(&s)) {
         status = gnoi_fail(s.context, GNO_ERROR_MEMORY, "gno_scene_find_problems: out of memory");
     } else {
-        status = gnoi_measure_scene(scene, threads, s.kinds, &measures);
+        status = gnoi_measure_scene(scene, threads, s.kinds, NULL, &measures);
         if (status == GNO_OK)
             status = gnoi_weld(s.context, threads, scene->vertex_count, (const double(*)[3])scene->positions, s.place);
         if (status == GNO_OK && !find_all(&s)) {

@@ -79,7 +79,8 @@ typedef struct gnoi_prepared {
     size_t corner_vertex_capacity;
     size_t vertex_count, vertex_capacity;
     double (*positions)[3];     /* the scene's, those that corners use, each once, in the order of first use */
-    size_t chunk_count;         /* runs of GNOI_CHUNK polygons */
+    size_t chunk_count;         /* runs of GNOI_CHUNK polygons; chunk_count + 1 elements of the following */
+    uint32_t *chunk_corner;     /* first corner of each whose polygons are all triangles, else GNOI_NONE */
     uint32_t *chunk_vertex;     /* vertices before each: numbers from chunk_vertex[k] to chunk_vertex[k + 1] are first used in chunk k */
     size_t seam_count, seam_capacity;
     uint32_t *seams;            /* polygons that share a vertex with one of an earlier chunk, by rising number */
@@ -161,6 +162,14 @@ static inline int gnoi_has_holes(const gno_scene *scene, const gno_material *m)
 /* Distance from a prepared polygon's plane within which things lie on it. positions: what corner_vertex indexes, prep's own once
  * the polygons are in order, the scene's before. */
 double gnoi_plane_tolerance(const gnoi_prepared *prep, const double (*positions)[3], const gnoi_poly *poly);
+
+/* The vertices of a prepared polygon's corners; those of triangles are found without fetching their records. Not for caps. */
+static inline const uint32_t *gnoi_corners_of(const gnoi_prepared *prep, size_t i, uint32_t *count)
+{
+    const uint32_t first = prep->chunk_corner[i / GNOI_CHUNK];
+    *count = first != GNOI_NONE ? 3 : prep->polys[i].corner_count;
+    return prep->corner_vertex + (first != GNOI_NONE ? first + 3 * (i % GNOI_CHUNK) : prep->polys[i].corner);
+}
 
 /* The connected part that a prepared polygon belongs to. */
 static inline uint32_t gnoi_solid_of(const gnoi_prepared *prep, const gnoi_poly *poly)

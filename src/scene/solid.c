@@ -2,8 +2,8 @@
  *
  * Place in the data flow: details.c -> here -> cap.c; the shadow passes leave half the casters of a closed part away (outside.c).
  * A part is closed when the directed edges of its polygons cancel. No table of edges is needed to see it: every edge from
- * a lower to a higher vertex number adds a pseudo-random number of the pair, every edge the other way takes it away; two
- * independent sums of 64 bits are zero if the edges cancel, and by chance only once in 2^128 if they do not.
+ * a lower to a higher vertex number adds a pseudo-random number of the pair, every edge the other way takes it away; the sum of
+ * 64 bits is zero if the edges cancel, and by chance only once in 2^64 if they do not.
  * Parts are numbered by their lowest vertices. A chunk of polygons adds what it finds of parts that begin in it where they are kept, and
  * what it finds of earlier parts to tallies of its own, which are brought together in the order of chunks.
  */
@@ -17,7 +17,7 @@
 
 /* What is known of a part, or of a chunk's share of it. */
 typedef struct tally {
-    uint64_t sum[2];
+    uint64_t sum;
     double volume; /* six times */
     double lower[3], upper[3];
     uint32_t solid, first, last; /* the polygons of it lie in [first,last] */
@@ -33,6 +33,7 @@ typedef struct finding {
     gnoi_preparing *w;
     gno_context *context;
     gnoi_prepared *prep;
+    int details;           /* some polygon may be a detail */
     uint32_t *first_solid; /* of each chunk: parts that begin in an earlier one have lower numbers */
     tally *whole;          /* of each part */
     tallies *shares;       /* of each chunk: of earlier parts */
@@ -62,11 +63,12 @@ static void join(uint32_t *parent, uint32_t v, uint32_t w)
 
 static void join_run(void *user, size_t first, size_t end)
 {
-    const gnoi_prepared *prep = user;
-    uint32_t *parent = prep->vertex_solid;
+    const gnoi_preparing *w = user;
+    uint32_t *parent = w->out->vertex_solid;
     for (size_t i = first; i < end; i++) {
-        const uint32_t *corner = prep->corner_vertex + prep->polys[i].corner;
-        for (uint32_t k = 1; k < prep->polys[i].corner_count; k++)
+        uint32_t count;
+        const uint32_t *corner = gnoi_corners_of(w->out, i, &count);
+        for (uint32_t k = 1; k < count; k++)
             if (parent[corner[k]] != parent[corner[0]])
                 join(parent, corner[k], corner[0]);
     }
@@ -80,7 +82,7 @@ static gno_status find_parts(const finding *f)
     gno_status status;
     for (uint32_t v = 0; v < prep->vertex_count; v++)
         parent[v] = v;
-    status = gnoi_over_polygons(f->context, prep, f->w->threads, join_run, prep);
+    status = gnoi_over_polygons(f->context, prep, f->w->threads, join_run, f->w);
     /* A vertex hangs from lower ones only: their part's number stands before it is asked for. */
     for (size_t k = 0; k < prep->chunk_count; k++) {
         f->first_solid[k] = count;
@@ -106,8 +108,7 @@ static void clear_tally(tally *t, uint32_t solid)
 
 static void add_tally(tally *t, const tally *share)
 {
-    t->sum[0] += share->sum[0];
-    t->sum[1] += share->sum[1];
+    t->sum += share->sum;
     t->volume += share->volume;
     t->open |= share->open;
     t->first = share->first < t->first ? share->first : t->first;
@@ -118,46 +119,70 @@ static void add_tally(tally *t, const tally *share)
     }
 }
 
-static uint64_t scramble(uint64_t x)
+static inline uint64_t scramble(uint64_t x)
 {
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
     x = (x ^ x >> 27) * 0x94d049bb133111ebu;
     return x ^ x >> 31;
 }
 
-static inline void add_edge(tally *t, uint32_t from, uint32_t to)
+/* What the edge adds to the sum. */
+static inline uint64_t edge_number(uint32_t from, uint32_t to)
 {
-    uint64_t pair = from < to ? (uint64_t)from << 32 | to : (uint64_t)to << 32 | from, h = scramble(pair + 0x9e3779b97f4a7c15u);
-    uint64_t other = h * 0xd6e8feb86659fd93u ^ pair; /* a second number of the same pair */
-    uint64_t sign = from < to ? 0 : ~(uint64_t)0;    /* minus x is ~x + 1 */
-    if (from == to)
-        return;
-    t->sum[0] += (h ^ sign) - sign;
-    t->sum[1] += (other ^ sign) - sign;
+    uint64_t low = from < to ? from : to, high = from < to ? to : from, h = scramble((low << 32 | high) + 0x9e3779b97f4a7c15u);
+    uint64_t sign = (uint64_t)0 - (from > to); /* minus h is ~h + 1 */
+    return from == to ? 0 : (h ^ sign) - sign;
 }
 
-/* Edges, bounds, signed volume (of pyramids over the polygons' planes) and opacity. A polygon with holes never closes a part. */
-static void add_polygon(const gnoi_prepared *prep, uint32_t i, tally *t)
+/* Six times the volume of the pyramid from `base` over a polygon's outer ring, or over all its corners as one ring: only parts
+ * without holes use it. */
+static double pyramid(const gnoi_prepared *prep, const uint32_t *vertex, uint32_t count, vec3 base)
 {
-    const gnoi_poly *poly = &prep->polys[i];
-    const uint32_t *vertex = prep->corner_vertex + poly->corner;
-    const uint32_t n = poly->corner_count;
     vec3 first = v3_from(prep->positions[vertex[0]]), sum = v3(0, 0, 0), before = v3(0, 0, 0);
-    t->open |= !poly->opaque || !poly->two_sided || poly->ring_count > 1;
-    t->first = i < t->first ? i : t->first;
-    t->last = i;
-    for (uint32_t k = 0; k < n; k++) {
-        const double *p = prep->positions[vertex[k]];
-        vec3 q = v3_sub(v3_from(p), first);
-        add_edge(t, vertex[k], vertex[k + 1 < n ? k + 1 : 0]);
-        for (int axis = 0; axis < 3; axis++) {
-            t->lower[axis] = p[axis] < t->lower[axis] ? p[axis] : t->lower[axis];
-            t->upper[axis] = p[axis] > t->upper[axis] ? p[axis] : t->upper[axis];
-        }
+    for (uint32_t k = 1; k < count; k++) {
+        vec3 q = v3_sub(v3_from(prep->positions[vertex[k]]), first);
         sum = v3_add(sum, v3_cross(before, q));
         before = q;
     }
-    t->volume += v3_dot(sum, v3_sub(first, v3_from(prep->lower)));
+    return v3_dot(sum, v3_sub(first, base));
+}
+
+/* Edges, signed volume and opacity of the polygons [first,end), all of one part. A polygon with holes never closes a part. */
+static void tally_run(const gnoi_preparing *w, size_t first, size_t end, tally *t)
+{
+    const gnoi_prepared *prep = w->out;
+    const vec3 base = v3_from(prep->lower);
+    uint64_t sum = 0;
+    double volume = 0;
+    for (size_t i = first; i < end; i++) {
+        uint32_t n;
+        const uint32_t *vertex = gnoi_corners_of(w->out, i, &n);
+        for (uint32_t k = 0; k + 1 < n; k++)
+            sum += edge_number(vertex[k], vertex[k + 1]);
+        sum += edge_number(vertex[n - 1], vertex[0]);
+        volume += pyramid(prep, vertex, n, base);
+    }
+    for (size_t i = first; i < end && !w->chunks[first / GNOI_CHUNK].closes; i++)
+        t->open |= !prep->polys[i].opaque || !prep->polys[i].two_sided || prep->polys[i].ring_count > 1;
+    t->sum += sum;
+    t->volume += volume;
+    t->first = first < t->first ? (uint32_t)first : t->first;
+    t->last = (uint32_t)end - 1;
+}
+
+static void bound_run(const gnoi_prepared *prep, size_t first, size_t end, tally *t)
+{
+    double lower[3], upper[3];
+    memcpy(lower, t->lower, sizeof lower);
+    memcpy(upper, t->upper, sizeof upper);
+    for (size_t v = first; v < end; v++)
+        for (int k = 0; k < 3; k++) {
+            double x = prep->positions[v][k];
+            lower[k] = x < lower[k] ? x : lower[k];
+            upper[k] = x > upper[k] ? x : upper[k];
+        }
+    memcpy(t->lower, lower, sizeof lower);
+    memcpy(t->upper, upper, sizeof upper);
 }
 
 /* The chunk's tally of an earlier part: one of the last few, or a new one. NULL without memory. */
@@ -174,43 +199,89 @@ static tally *share_of(gno_context *context, tallies *shares, uint32_t solid)
     return &shares->items[shares->count++];
 }
 
+/* Where the chunk keeps what it finds of a part. */
+static tally *tally_of(const finding *f, size_t chunk, tallies *shares, uint32_t solid)
+{
+    return solid >= f->first_solid[chunk] ? &f->whole[solid] : share_of(f->context, shares, solid);
+}
+
+static uint32_t solid_of(const finding *f, size_t i)
+{
+    uint32_t count;
+    return f->prep->vertex_solid[gnoi_corners_of(f->prep, i, &count)[0]];
+}
+
+static int is_detail(const finding *f, size_t i) { return f->details && f->prep->polys[i].detail; }
+
+static gno_status tally_polygons(const finding *f, size_t chunk, tallies *shares)
+{
+    const gnoi_prepared *prep = f->prep;
+    size_t end = (chunk + 1) * GNOI_CHUNK < prep->poly_count ? (chunk + 1) * GNOI_CHUNK : prep->poly_count;
+    for (size_t i = chunk * GNOI_CHUNK, first; i < end;) {
+        uint32_t solid = solid_of(f, i);
+        tally *t;
+        for (first = i; i < end && !is_detail(f, i) && solid_of(f, i) == solid; i++)
+            ;
+        if (i == first) { /* a detail */
+            i++;
+            continue;
+        }
+        t = tally_of(f, chunk, shares, solid);
+        if (!t)
+            return GNO_ERROR_MEMORY;
+        tally_run(f->w, first, i, t);
+    }
+    return GNO_OK;
+}
+
+/* Bounds, of details too. */
+static gno_status bound_vertices(const finding *f, size_t chunk, tallies *shares)
+{
+    const gnoi_prepared *prep = f->prep;
+    for (size_t v = prep->chunk_vertex[chunk], end = prep->chunk_vertex[chunk + 1], first; v < end;) {
+        uint32_t solid = prep->vertex_solid[v];
+        tally *t = tally_of(f, chunk, shares, solid);
+        for (first = v; v < end && prep->vertex_solid[v] == solid; v++)
+            ;
+        if (!t)
+            return GNO_ERROR_MEMORY;
+        bound_run(prep, first, v, t);
+    }
+    return GNO_OK;
+}
+
 static gno_status tally_chunk(void *user, int worker, size_t chunk)
 {
     const finding *f = user;
-    const gnoi_prepared *prep = f->prep;
-    size_t end = (chunk + 1) * GNOI_CHUNK < prep->poly_count ? (chunk + 1) * GNOI_CHUNK : prep->poly_count;
     tallies shares = {0};
-    tally *t = NULL;
-    gno_status status = GNO_OK;
+    gno_status status = tally_polygons(f, chunk, &shares);
     (void)worker;
-    for (size_t i = chunk * GNOI_CHUNK; i < end && !status; i++) {
-        uint32_t solid = gnoi_solid_of(prep, &prep->polys[i]);
-        if (prep->polys[i].detail)
-            continue;
-        if (!t || t->solid != solid)
-            t = solid >= f->first_solid[chunk] ? &f->whole[solid] : share_of(f->context, &shares, solid);
-        if (t)
-            add_polygon(prep, (uint32_t)i, t);
-        else
-            status = GNO_ERROR_MEMORY;
-    }
+    if (status == GNO_OK)
+        status = bound_vertices(f, chunk, &shares);
     f->shares[chunk] = shares;
     return status;
 }
 
 /* ---- polygons without area ---------------------------------------------------------------------------------------------- */
 
-/* Polygons without area close seams. v, w: prepared vertices, GNOI_NONE where only polygons without area are. */
-static void add_seam(const finding *f, uint32_t v, uint32_t w, int open)
+/* The prepared vertex of a scene corner, GNOI_NONE where only polygons without area are. */
+static uint32_t vertex_at(const finding *f, size_t corner)
+{
+    return f->w->vertex_number[f->w->same[f->w->scene->corner_vertex[corner]]];
+}
+
+/* Polygons without area close seams. The edge between two scene corners. */
+static void add_seam(const finding *f, size_t from, size_t to, int open)
 {
     const uint32_t *vertex_solid = f->prep->vertex_solid;
+    uint32_t v = vertex_at(f, from), w = vertex_at(f, to);
     tally *t;
     if (v == GNOI_NONE)
         return;
     t = &f->whole[vertex_solid[v]];
     t->open |= open || w == GNOI_NONE || vertex_solid[w] != vertex_solid[v];
     if (w != GNOI_NONE)
-        add_edge(t, v, w);
+        t->sum += edge_number(v, w);
 }
 
 static gno_status add_empty(const finding *f)
@@ -220,15 +291,13 @@ static gno_status add_empty(const finding *f)
     for (size_t p = 0; p < scene->polygon_count && w->measures.empty > 0; p++) {
         unsigned ring = scene->polygon_start[p], from = scene->ring_start[ring], to = scene->ring_start[ring + 1];
         for (unsigned i = from; gnoi_kind_of(w, p) == GNOI_EMPTY && i < to; i++)
-            add_seam(f, w->vertex_number[scene->corner_vertex[i]], w->vertex_number[scene->corner_vertex[i + 1 < to ? i + 1 : from]],
-                     scene->polygon_start[p + 1] != ring + 1);
+            add_seam(f, i, i + 1 < to ? i + 1 : from, scene->polygon_start[p + 1] != ring + 1);
         if (gnoi_stopped_at(scene->context, p))
             return GNO_ERROR_CANCELLED;
     }
     for (size_t t = 0; t < w->splits.count; t++)
         for (int k = 0; k < 3 && !w->splits.has_area[t]; k++)
-            add_seam(f, w->vertex_number[scene->corner_vertex[w->splits.corner[t][k]]],
-                     w->vertex_number[scene->corner_vertex[w->splits.corner[t][(k + 1) % 3]]], 0);
+            add_seam(f, w->splits.corner[t][k], w->splits.corner[t][(k + 1) % 3], 0);
     return GNO_OK;
 }
 
@@ -270,10 +339,10 @@ static void set_solids(const finding *f)
     for (size_t i = 0; i < f->prep->solid_count; i++) {
         tally *t = &f->whole[i];
         gnoi_solid *s = &f->prep->solids[i];
-        t->open |= !(t->lower[0] <= t->upper[0]); /* details alone */
+        t->open |= t->first == GNOI_NONE; /* details alone */
         memcpy(s->lower, t->lower, sizeof s->lower);
         memcpy(s->upper, t->upper, sizeof s->upper);
-        s->closed = !t->open && t->sum[0] == 0 && t->sum[1] == 0;
+        s->closed = !t->open && t->sum == 0;
         s->cap = GNOI_NONE;
         s->outwards = t->volume > 0;
     }
@@ -314,12 +383,20 @@ static gno_status find_solids(finding *f)
     return status;
 }
 
+static int has_details(const gno_scene *scene)
+{
+    size_t i = 0;
+    while (i < scene->object_count && scene->objects[i].detail_of < 0 && !scene->objects[i].find_details)
+        i++;
+    return i < scene->object_count;
+}
+
 gno_status gnoi_find_solids(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
     gnoi_prepared *prep = w->out;
     const size_t chunks = prep->chunk_count;
-    finding f = {w, context, prep, NULL, NULL, NULL};
+    finding f = {w, context, prep, has_details(w->scene), NULL, NULL, NULL};
     gno_status status;
     prep->vertex_solid = gnoi_malloc(context, prep->vertex_capacity, sizeof *prep->vertex_solid);
     f.first_solid = gnoi_malloc(context, chunks, sizeof *f.first_solid);

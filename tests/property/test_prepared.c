@@ -1,7 +1,5 @@
 /* test_prepared.c -- random meshes prepared, against obvious twins: what becomes of each polygon, the order in space, the numbering by first
- * use, normals, connected parts and whether they are closed, boundaries; and the same bytes for any number of threads.
- *
- * Meshes have whole coordinates from a small cube, so that vertices meet by chance, areas and planes are exact, and no verdict is a matter
+ * use, normals, connected parts and whether they are closed, boundaries; and the same bytes for any number of threads. Meshes have whole coordinates from a small cube, so that vertices meet by chance, areas and planes are exact, and no verdict is a matter
  * of rounding. GNOMON_ROUNDS: number of meshes (default 150).
  */
 #include <setjmp.h>
@@ -11,11 +9,10 @@
 
 #include <cmocka.h>
 
-#include "base/sort_parallel.h"
 #include "scene/boundary.h"
 #include "scene/prepare.h"
-#include "scene/weld.h"
 #include "support/random_scene.h"
+#include "support/weld_twin.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -25,104 +22,7 @@ static int rounds(void)
     const char *text = getenv("GNOMON_ROUNDS");
     return text && atoi(text) > 0 ? atoi(text) : 150;
 }
-
 static int below(uint64_t *seed, int n) { return (int)(random_unit(seed) * n); }
-
-/* ---- sorting and welding ----------------------------------------------------------------------------------------------- */
-
-static int by_key_then_value(const void *a, const void *b)
-{
-    const gnoi_keyed *x = a, *y = b;
-    return x->key != y->key ? (x->key < y->key ? -1 : 1) : x->value < y->value ? -1 : x->value > y->value;
-}
-
-static void test_sort(void **state)
-{
-    static const size_t counts[] = {0, 1, 1000, 131071, 131072, 300001};
-    gno_context *context;
-    uint64_t seed = 5;
-    (void)state;
-    assert_int_equal(gno_context_create(NULL, &context), GNO_OK);
-    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
-        for (unsigned bits = 1; bits <= 32; bits += 31 / 3) {
-            size_t n = counts[c];
-            gnoi_keyed *pairs = calloc(2 * n + 1, sizeof *pairs), *twin = calloc(n + 1, sizeof *twin), *sorted;
-            assert_true(pairs && twin);
-            for (size_t i = 0; i < n; i++) {
-                pairs[i].key = (uint32_t)(random_unit(&seed) * 4294967295.0) >> (32 - bits);
-                pairs[i].value = (uint32_t)i;
-            }
-            memcpy(twin, pairs, n * sizeof *pairs);
-            qsort(twin, n, sizeof *twin, by_key_then_value);
-            sorted = gnoi_sort_parallel(context, 1 + (int)c % 3, "test", pairs, pairs + n, n, bits);
-            assert_non_null(sorted);
-            assert_memory_equal(sorted, twin, n * sizeof *pairs);
-            free(pairs);
-            free(twin);
-        }
-    gno_context_destroy(context);
-}
-
-static const double (*sorted_positions)[3];
-
-static int compare_positions(const double p[3], const double q[3])
-{
-    for (int k = 0; k < 3; k++)
-        if (p[k] != q[k])
-            return p[k] < q[k] ? -1 : 1;
-    return 0;
-}
-
-static int by_position_then_number(const void *a, const void *b)
-{
-    uint32_t v = *(const uint32_t *)a, w = *(const uint32_t *)b;
-    int c = compare_positions(sorted_positions[v], sorted_positions[w]);
-    return c ? c : v < w ? -1 : v > w;
-}
-
-/* first[v]: the first vertex at v's place. The caller frees. */
-static uint32_t *weld_twin(const double (*positions)[3], size_t count)
-{
-    uint32_t *order = calloc(count + 1, sizeof *order), *first = calloc(count + 1, sizeof *first);
-    assert_true(order && first);
-    for (size_t i = 0; i < count; i++)
-        order[i] = (uint32_t)i;
-    sorted_positions = positions;
-    qsort(order, count, sizeof *order, by_position_then_number);
-    for (size_t i = 0; i < count; i++)
-        first[order[i]] = i > 0 && compare_positions(positions[order[i]], positions[order[i - 1]]) == 0 ? first[order[i - 1]] : order[i];
-    free(order);
-    return first;
-}
-
-static void test_weld(void **state)
-{
-    static const struct { size_t count; int places; } cases[] = {{0, 1}, {1, 1}, {1000, 1}, {3000, 3}, {5000, 20}, {100000, 30}, {120000, 1000000}};
-    gno_context *context;
-    uint64_t seed = 3;
-    (void)state;
-    assert_int_equal(gno_context_create(NULL, &context), GNO_OK);
-    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++)
-        for (int threads = 1; threads <= 3; threads += 2) {
-            size_t n = cases[c].count;
-            double(*positions)[3] = calloc(n + 1, sizeof *positions);
-            uint32_t *same = calloc(n + 1, sizeof *same), *twin;
-            assert_true(positions && same);
-            for (size_t v = 0; v < n; v++)
-                for (int k = 0; k < 3; k++) {
-                    positions[v][k] = below(&seed, cases[c].places) - cases[c].places / 2;
-                    if (positions[v][k] == 0 && below(&seed, 2))
-                        positions[v][k] = -0.0;
-                }
-            twin = weld_twin((const double(*)[3])positions, n);
-            assert_int_equal(gnoi_weld(context, threads, n, (const double(*)[3])positions, same), GNO_OK);
-            assert_memory_equal(same, twin, n * sizeof *same);
-            free(positions);
-            free(same);
-            free(twin);
-        }
-    gno_context_destroy(context);
-}
 
 /* ---- random meshes -------------------------------------------------------------------------------------------------------- */
 
@@ -140,7 +40,6 @@ static void add_corner(draft *d, int vertex, uint64_t *seed)
 }
 
 static void end_ring(draft *d) { d->ring_start[++d->ring_count] = (unsigned)d->corner_count; }
-
 static void end_polygon(draft *d) { d->polygon_start[++d->polygon_count] = (unsigned)d->ring_count; }
 
 static int add_vertex(draft *d, const double p[3])
@@ -290,7 +189,6 @@ static int twin_planar(const gno_scene *s, size_t p)
 }
 
 static vec3 at(const gnoi_prepared *q, size_t corner) { return v3_from(q->positions[q->corner_vertex[corner]]); }
-
 static int same_place(vec3 a, vec3 b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 
 /* A kept polygon has its source's corners, ring by ring; a split one's triangles have some of them. */
@@ -358,6 +256,7 @@ static void check_numbers(const gno_scene *s)
     const gnoi_prepared *q = &s->prepared;
     uint32_t next = 0, *twin = weld_twin((const double(*)[3])q->positions, q->vertex_count);
     size_t seams = 0;
+    assert_non_null(twin);
     for (size_t v = 0; v < q->vertex_count; v++)
         assert_int_equal(twin[v], v); /* no two at one place */
     free(twin);
@@ -694,8 +593,6 @@ static void test_large_meshes(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sort),
-        cmocka_unit_test(test_weld),
         cmocka_unit_test(test_small_meshes),
         cmocka_unit_test(test_large_meshes),
     };
