@@ -6,7 +6,7 @@
 #include "cli/cli.h"
 #include "cli/info.h"
 #include "cli/options.h"
-#include "cli/progress.h"
+#include "cli/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -26,11 +26,8 @@ static const option options[] = {
 enum { OPTIONS = sizeof options / sizeof options[0] };
 
 typedef struct job {
-    const char *scene_path;
-    gno_setting *settings;
-    size_t setting_count;
-    size_t memory; /* ceiling, 0: none */
-    int threads, json, quiet;
+    scene_wish scene;
+    int json;
 } job;
 
 static int help(void)
@@ -53,29 +50,20 @@ static int take_option(void *job_of, int id, char *value)
 {
     job *work = job_of;
     switch (id) {
-    case SET:
-        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("info", "--set %s: not KEY=VALUE", value);
-    case THREADS:
-        return parse_int(value, 0, GNO_MAX_THREADS, &work->threads)
-                   ? -1
-                   : usage("info", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
-    case MEMORY:
-        return take_memory("info", value, &work->memory);
     case JSON:
         work->json = 1;
         return -1;
-    case QUIET:
-        work->quiet = 1;
-        return -1;
-    default:
+    case HELP:
         return help();
+    default:
+        return take_common(&work->scene, "info", options[id].name, value);
     }
 }
 
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("info", options, OPTIONS, argc, argv);
-    return options_read(&reader, take_option, work, &work->scene_path);
+    return options_read(&reader, take_option, work, &work->scene.path);
 }
 
 /* Stops the search when memory is short; `full` tells so. */
@@ -98,10 +86,10 @@ static int keep_problem(void *user, const gno_problem *problem)
 
 static gno_status gather(const job *work, gno_scene *scene, summary *found)
 {
-    gno_status status = gno_scene_prepare(scene, work->threads, &found->problems);
+    gno_status status = gno_scene_prepare(scene, work->scene.threads, &found->problems);
     found->list.context = gno_scene_context(scene);
     if (status == GNO_OK) {
-        status = gno_scene_find_problems(scene, work->threads, keep_problem, &found->list, found->problem_counts);
+        status = gno_scene_find_problems(scene, work->scene.threads, keep_problem, &found->list, found->problem_counts);
     }
     if (found->list.full) {
         return gno_context_fail(gno_scene_context(scene), GNO_ERROR_MEMORY, "out of memory for the list of problems");
@@ -109,7 +97,7 @@ static gno_status gather(const job *work, gno_scene *scene, summary *found)
     if (status != GNO_OK) {
         return status;
     }
-    found->path = work->scene_path;
+    found->path = work->scene.path;
     found->counts = gno_scene_count(scene);
     found->has_bounds = gno_scene_bounds(scene, found->lower, found->upper);
     found->material_polygons = calloc(found->counts.materials + 1, sizeof *found->material_polygons);
@@ -154,64 +142,53 @@ static void keep_warning(void *user, gno_log_level level, const char *text)
     found->warnings[found->warning_count++] = copy;
 }
 
+static int run_loaded(const job *work, session *s, summary *found)
+{
+    found->scene = s->scene;
+    int status = session_result(s, gather(work, s->scene, found));
+    if (status == EXIT_DONE) {
+        if (work->json) {
+            info_json(found);
+        } else {
+            info_text(found);
+        }
+        status = close_output();
+    }
+    return status;
+}
+
 static int run_job(const job *work)
 {
-    progress shown = progress_make(work->quiet);
-    gno_context_def def = progress_context_def(&shown);
-    gno_context *context = NULL;
-    gno_scene *scene = NULL;
+    session s;
     summary found;
     memset(&found, 0, sizeof found);
-    def.log = keep_warning;
-    def.log_user = &found;
-    def.max_memory = work->memory;
-    if (gno_context_create(&def, &context) != GNO_OK) {
-        say("out of memory");
-        return EXIT_FAILED;
-    }
-    gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, &scene);
-    if (status == GNO_OK) {
-        found.scene = scene;
-        status = gather(work, scene, &found);
-    }
-    progress_clear(&shown);
-    int exit_status = EXIT_FAILED;
-    if (status == GNO_OK) {
-        if (work->json) {
-            info_json(&found);
-        } else {
-            info_text(&found);
-        }
-        exit_status = close_output();
-    } else {
-        say("%s", gno_context_message(context));
-    }
+    session_begin(&s, &work->scene);
+    s.def.log = keep_warning;
+    s.def.log_user = &found;
+    int status = session_load(&s);
+    status = status < 0 ? run_loaded(work, &s, &found) : status;
     for (size_t i = 0; i < found.warning_count; i++) {
         free(found.warnings[i]);
     }
     free(found.warnings);
     free(found.material_polygons);
-    gno_context_realloc(context, found.list.items, found.list.room * sizeof *found.list.items, 0);
-    gno_scene_destroy(scene);
-    gno_context_destroy(context);
-    return exit_status;
+    if (found.list.items != NULL) {
+        gno_context_realloc(s.context, found.list.items, found.list.room * sizeof *found.list.items, 0);
+    }
+    session_end(&s);
+    return status;
 }
 
 static int run(int argc, char **argv)
 {
     job work;
+    int status = EXIT_FAILED;
     memset(&work, 0, sizeof work);
-    /* No more settings than arguments; one more so that the size is never zero. */
-    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
-    if (work.settings == NULL) {
-        say("out of memory");
-        return EXIT_FAILED;
+    if (scene_wish_make(&work.scene, argc)) {
+        status = read_arguments(&work, argc, argv);
+        status = status < 0 ? run_job(&work) : status;
     }
-    int status = read_arguments(&work, argc, argv);
-    if (status < 0) {
-        status = run_job(&work);
-    }
-    free(work.settings);
+    scene_wish_free(&work.scene);
     return status;
 }
 

@@ -7,14 +7,12 @@
 #include "cli/interrupt.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/progress.h"
+#include "cli/session.h"
 
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <unistd.h>
 
 enum option_id { OUTPUT, PIECES, LIGHT, THREADS, NO_CERTIFICATE, SET, MEMORY, STATS, QUIET, HELP };
 
@@ -34,16 +32,13 @@ static const option options[] = {
 enum { OPTIONS = sizeof options / sizeof options[0], MOST_FILES = 8 };
 
 typedef struct job {
-    const char *scene_path, *table_path, *stats_path;
+    scene_wish scene;
+    const char *table_path, *stats_path;
     int piece_files;
     const char *piece_paths[MOST_FILES];
     const char **light_names; /* room for one an argument */
     size_t light_count;
-    gno_setting *settings;
-    size_t setting_count;
     gno_lit_def def;
-    size_t memory; /* ceiling, 0: none */
-    int quiet;
 } job;
 
 static int help(void)
@@ -63,57 +58,37 @@ static int help(void)
     return close_output();
 }
 
-static int has_extension(const char *path, const char *const *extensions, int count)
-{
-    const char *slash = strrchr(path, '/'), *dot = strrchr(slash != NULL ? slash : path, '.');
-    for (int i = 0; dot != NULL && i < count; i++) {
-        if (strcasecmp(dot, extensions[i]) == 0) {
-            return 1;
-        }
-    }
-    return 0;
-}
-
 /* Returns an exit status, or -1 to go on. */
 static int take_option(void *job_of, int id, char *value)
 {
     job *work = job_of;
-    static const char *const table[] = {".csv"}, *const geometry[] = {".obj", ".geojson", ".json"};
+    static const char *const table[] = {".csv", NULL}, *const geometry[] = {".obj", ".geojson", ".json", NULL};
     switch (id) {
     case OUTPUT:
         if (work->table_path != NULL) {
             return usage("lit", "one table at a time: \"%s\" after \"%s\"", value, work->table_path);
         }
         work->table_path = value;
-        return strcmp(value, "-") == 0 || has_extension(value, table, 1) ? -1 : usage("lit", "%s: the extension is not .csv", value);
+        return strcmp(value, "-") == 0 || output_extension(value, table) >= 0 ? -1 : usage("lit", "%s: the extension is not .csv", value);
     case PIECES:
         if (work->piece_files == MOST_FILES) {
             return usage("lit", "more than %d files of pieces", MOST_FILES);
         }
         work->piece_paths[work->piece_files++] = value;
-        return has_extension(value, geometry, 3) ? -1 : usage("lit", "%s: the extension is not one of .obj, .geojson, .json", value);
+        return output_extension(value, geometry) >= 0 ? -1 : usage("lit", "%s: the extension is not one of .obj, .geojson, .json", value);
     case LIGHT:
         work->light_names[work->light_count++] = value;
         return -1;
-    case THREADS:
-        return parse_int(value, 0, GNO_MAX_THREADS, &work->def.threads)
-                   ? -1
-                   : usage("lit", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
     case NO_CERTIFICATE:
         work->def.certify = 0;
         return -1;
-    case SET:
-        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("lit", "--set %s: not KEY=VALUE", value);
-    case MEMORY:
-        return take_memory("lit", value, &work->memory);
     case STATS:
         work->stats_path = value;
         return -1;
-    case QUIET:
-        work->quiet = 1;
-        return -1;
-    default:
+    case HELP:
         return help();
+    default:
+        return take_common(&work->scene, "lit", options[id].name, value);
     }
 }
 
@@ -121,7 +96,7 @@ static int take_option(void *job_of, int id, char *value)
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("lit", options, OPTIONS, argc, argv);
-    const int wrong = options_read(&reader, take_option, work, &work->scene_path);
+    const int wrong = options_read(&reader, take_option, work, &work->scene.path);
     if (wrong >= 0) {
         return wrong;
     }
@@ -138,56 +113,22 @@ static int read_arguments(job *work, int argc, char **argv)
     return status == EXIT_DONE ? -1 : status;
 }
 
-static int report(gno_context *context, progress *shown)
+/* Marks the lights asked for, or all; returns 0 when there is none of that name, or none at all. */
+static int mark_lights(const job *work, const session *s, unsigned char *wanted)
 {
-    progress_clear(shown);
-    if (interrupt_signal() != 0) {
-        say("interrupted; nothing half done is left");
-        return EXIT_SIGNAL + interrupt_signal();
-    }
-    say("%s", gno_context_message(context));
-    return EXIT_FAILED;
-}
-
-static int wanted(const job *work, const char *name)
-{
-    int found = work->light_count == 0;
+    const int count = (int)gno_scene_count(s->scene).lights;
+    memset(wanted, work->light_count == 0, (size_t)count);
     for (size_t i = 0; i < work->light_count; i++) {
-        found |= strcmp(work->light_names[i], name) == 0;
-    }
-    return found;
-}
-
-/* Says which name is not a light's; returns 0 then. */
-static int know_lights(const job *work, const gno_scene *scene)
-{
-    const int count = (int)gno_scene_count(scene).lights;
-    const char **names = calloc((size_t)count + 1, sizeof *names);
-    int known = names != NULL;
-    gno_light light;
-    if (names == NULL) {
-        say("out of memory");
-    }
-    for (int i = 0; i < count && known; i++) {
-        known = gno_scene_light(scene, i, &light, &names[i]) == GNO_OK;
-    }
-    for (size_t k = 0; k < work->light_count && known; k++) {
-        known = 0;
-        for (int i = 0; i < count && !known; i++) {
-            known = strcmp(names[i], work->light_names[k]) == 0;
+        const int light = session_find_light(s, work->light_names[i]);
+        if (light < 0) {
+            return 0;
         }
-        if (!known) {
-            const char *near = nearest_name(work->light_names[k], names, count);
-            say("%s: no light is called \"%s\"%s%s%s", work->scene_path, work->light_names[k], near != NULL ? "; did you mean \"" : "",
-                near != NULL ? near : "", near != NULL ? "\"?" : "");
-        }
+        wanted[light] = 1;
     }
-    if (known && count == 0) {
-        say("%s: no lights", work->scene_path);
-        known = 0;
+    if (count == 0) {
+        say("%s: no lights", work->scene.path);
     }
-    free(names);
-    return known;
+    return count > 0;
 }
 
 /* Bytes of one light's rows; through the context, so that they count for --memory. */
@@ -196,29 +137,27 @@ static size_t rows_size(const gno_scene *scene)
     return (gno_scene_count(scene).polygons + 1) * sizeof(gno_lit_row);
 }
 
-static gno_status light_scene(const job *work, lit_run *run)
+static gno_status light_scene(const job *work, const unsigned char *wanted, lit_run *run)
 {
     gno_context *context = gno_scene_context(run->scene);
     const size_t lights = gno_expanded_light_count(run->scene), polygons = gno_scene_count(run->scene).polygons;
     gno_status status = GNO_OK;
+    gno_lit_def def = work->def;
+    def.threads = work->scene.threads;
     for (size_t i = 0; i < lights && status == GNO_OK; i++) {
         gno_lit_result *result = &run->results[run->count];
         gno_pieces *pieces = NULL;
         gno_light light;
-        const char *name;
         int source;
         status = gno_expanded_light(run->scene, i, &light, &source);
-        if (status == GNO_OK) {
-            status = gno_scene_light(run->scene, source, &light, &name);
-        }
-        if (status != GNO_OK || !wanted(work, name)) {
+        if (status != GNO_OK || !wanted[source]) {
             continue;
         }
         gno_lit_row *rows = polygons < SIZE_MAX / sizeof *rows ? gno_context_realloc(context, NULL, 0, rows_size(run->scene)) : NULL;
         if (rows == NULL) {
             return gno_context_fail(context, GNO_ERROR_MEMORY, "out of memory for the table");
         }
-        status = gno_lit_pieces(run->scene, i, &work->def, work->piece_files > 0 ? &pieces : NULL, rows, &run->summaries[run->count]);
+        status = gno_lit_pieces(run->scene, i, &def, work->piece_files > 0 ? &pieces : NULL, rows, &run->summaries[run->count]);
         result->light = i;
         result->rows = rows;
         result->pieces = pieces;
@@ -227,19 +166,14 @@ static gno_status light_scene(const job *work, lit_run *run)
     return status;
 }
 
-/* piece: which file of pieces, -1 for the table. A signal ends the program at once while it writes to a stream: see render.c. */
+/* piece: which file of pieces, -1 for the table. */
 static gno_status write_file(const job *work, const lit_run *run, int piece)
 {
     const char *path = piece < 0 ? work->table_path : work->piece_paths[piece];
-    const int stream = output_is_stream(path);
-    if (stream) {
-        interrupt_release();
-    }
+    const int stream = output_begin(path);
     const gno_status status = piece < 0 ? gno_lit_table_write(run->scene, path, run->results, run->count)
                                         : gno_pieces_write(run->scene, path, run->results, run->count);
-    if (stream && status == GNO_OK) {
-        interrupt_catch();
-    }
+    output_end(stream, status);
     return status;
 }
 
@@ -262,87 +196,76 @@ static void free_results(lit_run *run)
     free(run->summaries);
 }
 
-static int run_scene(const job *work, gno_context *context, lit_run *run, progress *shown, double begun)
+static int run_scene(const job *work, session *s, const unsigned char *wanted, lit_run *run)
 {
-    const size_t lights = gno_expanded_light_count(run->scene);
-    gno_status status;
-    if (!know_lights(work, run->scene)) {
-        return EXIT_FAILED;
-    }
-    run->results = calloc(lights, sizeof *run->results);
-    run->summaries = calloc(lights, sizeof *run->summaries);
-    if (run->results == NULL || run->summaries == NULL) {
-        say("out of memory");
-        return EXIT_FAILED;
-    }
     interrupt_catch();
-    status = light_scene(work, run);
-    progress_clear(shown);
+    gno_status status = light_scene(work, wanted, run);
+    progress_clear(&s->shown);
     const double written_from = seconds_now();
     if (status == GNO_OK) {
         status = write_files(work, run);
     }
     if (status != GNO_OK) {
-        return report(context, shown);
+        return session_result(s, status);
     }
     interrupt_release();
     run->write_seconds = seconds_now() - written_from;
-    run->total_seconds = seconds_now() - begun;
-    gno_context_memory(context, &run->peak_memory);
-    if (!work->quiet) {
+    run->total_seconds = seconds_now() - s->begun;
+    gno_context_memory(s->context, &run->peak_memory);
+    if (!work->scene.quiet) {
         lit_summary(run);
     }
     return work->stats_path != NULL ? lit_stats(work->stats_path, run) : EXIT_DONE;
 }
 
-static int run_job(const job *work)
+static int run_loaded(const job *work, session *s)
 {
-    progress shown = progress_make(work->quiet);
-    const double begun = seconds_now();
-    gno_context_def def = progress_context_def(&shown);
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    gno_context *context = NULL;
+    const size_t points = gno_expanded_light_count(s->scene), lights = gno_scene_count(s->scene).lights;
+    unsigned char *wanted = calloc(lights + 1, 1);
     lit_run run;
     int status = EXIT_FAILED;
     memset(&run, 0, sizeof run);
-    run.scene_path = work->scene_path;
+    run.scene_path = work->scene.path;
+    run.scene = s->scene;
     run.certified = work->def.certify;
-    run.threads = work->def.threads > 0 ? work->def.threads : processors < 1 ? 1 : processors > GNO_MAX_THREADS ? GNO_MAX_THREADS : (int)processors;
-    def.max_memory = work->memory;
-    if (gno_context_create(&def, &context) != GNO_OK) {
+    run.threads = session_threads(s);
+    run.load_seconds = s->load_seconds;
+    run.results = calloc(points + 1, sizeof *run.results);
+    run.summaries = calloc(points + 1, sizeof *run.summaries);
+    if (wanted == NULL || run.results == NULL || run.summaries == NULL) {
         say("out of memory");
-        return EXIT_FAILED;
+    } else if (mark_lights(work, s, wanted)) {
+        status = run_scene(work, s, wanted, &run);
     }
-    if (gno_scene_load(context, work->scene_path, work->settings, work->setting_count, &run.scene) == GNO_OK) {
-        run.load_seconds = seconds_now() - begun;
-        status = run_scene(work, context, &run, &shown, begun);
-    } else {
-        status = report(context, &shown);
-    }
+    free(wanted);
     free_results(&run);
-    gno_scene_destroy(run.scene);
-    gno_context_destroy(context);
+    return status;
+}
+
+static int run_job(const job *work)
+{
+    session s;
+    session_begin(&s, &work->scene);
+    int status = session_load(&s);
+    status = status < 0 ? run_loaded(work, &s) : status;
+    session_end(&s);
     return status;
 }
 
 static int run(int argc, char **argv)
 {
     job work;
+    int status = EXIT_FAILED;
     memset(&work, 0, sizeof work);
     work.def = gno_lit_def_default();
-    /* No more settings and names than arguments; one more so that the size is never zero. */
-    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
-    work.light_names = calloc((size_t)argc + 1, sizeof *work.light_names);
-    int status = EXIT_FAILED;
-    if (work.settings == NULL || work.light_names == NULL) {
+    work.light_names = calloc((size_t)argc + 1, sizeof *work.light_names); /* no more names than arguments */
+    if (work.light_names == NULL) {
         say("out of memory");
-    } else {
+    } else if (scene_wish_make(&work.scene, argc)) {
         status = read_arguments(&work, argc, argv);
-        if (status < 0) {
-            status = run_job(&work);
-        }
+        status = status < 0 ? run_job(&work) : status;
     }
-    free(work.settings);
+    scene_wish_free(&work.scene);
     free(work.light_names);
     return status;
 }

@@ -7,12 +7,11 @@
 #include "cli/matrix_stats.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/progress.h"
+#include "cli/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 enum option_id { OUTPUT, LIGHT, THREADS, CHECK, SET, MEMORY, STATS, QUIET, HELP };
 
@@ -38,11 +37,9 @@ enum { OPTIONS = sizeof options / sizeof options[0] };
 enum { SMALL_SCENE = 2000 };
 
 typedef struct job {
-    const char *scene_path, *output, *light, *stats_path;
-    gno_setting *settings;
-    size_t setting_count;
-    size_t memory; /* ceiling, 0: none */
-    int threads, check, quiet;
+    scene_wish scene;
+    const char *output, *light, *stats_path;
+    int check;
     int each; /* the output's name has %s */
 } job;
 
@@ -61,22 +58,16 @@ static int help(void)
     return close_output();
 }
 
-static int has_extension(const char *path, const char *extension)
-{
-    const char *slash = strrchr(path, '/');
-    const char *dot = strrchr(slash != NULL ? slash : path, '.');
-    return dot != NULL && strcasecmp(dot, extension) == 0;
-}
-
 static int check_output(job *work)
 {
+    static const char *const extensions[] = {".mtx", ".csv", ".png", NULL};
     const char *percent = strchr(work->output, '%');
     if (strcmp(work->output, "-") == 0) {
         return work->stats_path != NULL && strcmp(work->stats_path, "-") == 0
                    ? usage("matrix", "standard output cannot take both the matrix and --stats")
                    : -1;
     }
-    if (!has_extension(work->output, ".mtx") && !has_extension(work->output, ".csv") && !has_extension(work->output, ".png")) {
+    if (output_extension(work->output, extensions) < 0) {
         return usage("matrix", "%s: the extension is not one of .mtx, .csv, .png", work->output);
     }
     if (percent != NULL) {
@@ -100,32 +91,23 @@ static int take_option(void *job_of, int id, char *value)
     case LIGHT:
         work->light = value;
         return -1;
-    case THREADS:
-        return parse_int(value, 0, GNO_MAX_THREADS, &work->threads)
-                   ? -1
-                   : usage("matrix", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
     case CHECK:
         work->check = 1;
         return -1;
-    case SET:
-        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("matrix", "--set %s: not KEY=VALUE", value);
-    case MEMORY:
-        return take_memory("matrix", value, &work->memory);
     case STATS:
         work->stats_path = value;
         return -1;
-    case QUIET:
-        work->quiet = 1;
-        return -1;
-    default:
+    case HELP:
         return help();
+    default:
+        return take_common(&work->scene, "matrix", options[id].name, value);
     }
 }
 
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("matrix", options, OPTIONS, argc, argv);
-    const int wrong = options_read(&reader, take_option, work, &work->scene_path);
+    const int wrong = options_read(&reader, take_option, work, &work->scene.path);
     return wrong >= 0 ? wrong : check_output(work);
 }
 
@@ -160,16 +142,11 @@ static gno_status save(const job *work, gno_context *context, gno_matrix *matrix
     if (path == NULL) {
         return gno_context_fail(context, GNO_ERROR_MEMORY, "out of memory");
     }
-    snprintf(note, sizeof note, "light \"%.100s\" of %.150s", name, work->scene_path);
+    snprintf(note, sizeof note, "light \"%.100s\" of %.150s", name, work->scene.path);
     def.note = note;
-    const int stream = output_is_stream(path);
-    if (stream) {
-        interrupt_release(); /* see render.c: a reader that does not read must not hold up a signal */
-    }
-    gno_status status = gno_matrix_save(matrix, path, &def);
-    if (stream) {
-        interrupt_catch();
-    }
+    const int stream = output_begin(path);
+    const gno_status status = gno_matrix_save(matrix, path, &def);
+    output_end(stream, status);
     free(path);
     return status;
 }
@@ -180,7 +157,7 @@ static gno_status run_light(const job *work, gno_scene *scene, int light, matrix
     gno_matrix_def def = gno_matrix_def_default();
     gno_matrix *matrix = NULL;
     gno_status status = gno_scene_light(scene, light, NULL, &stats->light);
-    def.threads = work->threads;
+    def.threads = work->scene.threads;
     if (status == GNO_OK) {
         status = gno_matrix_build(scene, light, &def, &matrix);
     }
@@ -203,44 +180,21 @@ static gno_status run_light(const job *work, gno_scene *scene, int light, matrix
 
 /* ---- the run ------------------------------------------------------------------------------------------------------- */
 
-static int find_light(const job *work, gno_scene *scene, int *light)
+static int run_lights(const job *work, session *s)
 {
-    const int count = (int)gno_scene_count(scene).lights;
-    const char **names = calloc((size_t)count + 1, sizeof *names);
-    if (names == NULL) {
-        say("out of memory");
-        return EXIT_FAILED;
-    }
-    for (*light = 0; *light < count; ++*light) {
-        gno_scene_light(scene, *light, NULL, &names[*light]);
-        if (strcmp(names[*light], work->light) == 0) {
-            break;
-        }
-    }
-    const char *near = *light == count ? nearest_name(work->light, names, count) : NULL;
-    if (*light == count) {
-        say(near != NULL ? "%s: there is no light \"%s\"; did you mean \"%s\"?" : "%s: there is no light \"%s\"", work->scene_path, work->light, near);
-    }
-    const int status = *light == count ? EXIT_FAILED : EXIT_DONE;
-    free(names);
-    return status;
-}
-
-static int run_lights(const job *work, gno_scene *scene, progress *shown, double load_seconds)
-{
-    int first = 0, end = (int)gno_scene_count(scene).lights;
+    int first = 0, end = (int)gno_scene_count(s->scene).lights;
     if (end == 0) {
-        say("%s: has no light", work->scene_path);
+        say("%s: has no light", work->scene.path);
         return EXIT_FAILED;
     }
     if (work->light != NULL) {
-        const int status = find_light(work, scene, &first);
-        if (status != EXIT_DONE) {
-            return status;
+        first = session_find_light(s, work->light);
+        if (first < 0) {
+            return EXIT_FAILED;
         }
     }
     end = work->each && work->light == NULL ? end : first + 1;
-    matrix_report report = {work->scene_path, work->threads, load_seconds, 0, calloc((size_t)(end - first), sizeof(matrix_stats))};
+    matrix_report report = {work->scene.path, work->scene.threads, s->load_seconds, 0, calloc((size_t)(end - first), sizeof(matrix_stats))};
     if (report.lights == NULL) {
         say("out of memory");
         return EXIT_FAILED;
@@ -248,17 +202,13 @@ static int run_lights(const job *work, gno_scene *scene, progress *shown, double
     gno_status status = GNO_OK;
     interrupt_catch();
     for (int light = first; light < end && status == GNO_OK; light++) {
-        status = run_light(work, scene, light, &report.lights[report.count++]);
+        status = run_light(work, s->scene, light, &report.lights[report.count++]);
     }
-    progress_clear(shown);
-    int result = EXIT_DONE;
-    if (interrupt_signal() != 0) {
-        say("interrupted; nothing half done is left");
-        result = EXIT_SIGNAL + interrupt_signal();
-    } else if (status != GNO_OK) {
-        say("%s", gno_context_message(gno_scene_context(scene)));
-        result = EXIT_FAILED;
-    } else {
+    if (status == GNO_OK && interrupt_signal() != 0) {
+        status = GNO_ERROR_CANCELLED;
+    }
+    int result = session_result(s, status);
+    if (result == EXIT_DONE) {
         interrupt_release();
         result = work->stats_path != NULL ? report_write(work->stats_path, matrix_stats_print, &report) : EXIT_DONE;
     }
@@ -268,45 +218,25 @@ static int run_lights(const job *work, gno_scene *scene, progress *shown, double
 
 static int run_job(const job *work)
 {
-    progress shown = progress_make(work->quiet);
-    const double begun = seconds_now();
-    gno_context_def def = progress_context_def(&shown);
-    gno_context *context = NULL;
-    gno_scene *scene = NULL;
-    int status = EXIT_FAILED;
-    def.max_memory = work->memory;
-    if (gno_context_create(&def, &context) != GNO_OK) {
-        say("out of memory");
-        return EXIT_FAILED;
-    }
-    if (gno_scene_load(context, work->scene_path, work->settings, work->setting_count, &scene) == GNO_OK) {
-        status = run_lights(work, scene, &shown, seconds_now() - begun);
-    } else {
-        progress_clear(&shown);
-        say("%s", gno_context_message(context));
-    }
-    gno_scene_destroy(scene);
-    gno_context_destroy(context);
+    session s;
+    session_begin(&s, &work->scene);
+    int status = session_load(&s);
+    status = status < 0 ? run_lights(work, &s) : status;
+    session_end(&s);
     return status;
 }
 
 static int run(int argc, char **argv)
 {
     job work;
+    int status = EXIT_FAILED;
     memset(&work, 0, sizeof work);
     work.output = "-";
-    /* No more settings than arguments; one more so that the size is never zero. */
-    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
-    int status = EXIT_FAILED;
-    if (work.settings == NULL) {
-        say("out of memory");
-    } else {
+    if (scene_wish_make(&work.scene, argc)) {
         status = read_arguments(&work, argc, argv);
-        if (status < 0) {
-            status = run_job(&work);
-        }
+        status = status < 0 ? run_job(&work) : status;
     }
-    free(work.settings);
+    scene_wish_free(&work.scene);
     return status;
 }
 

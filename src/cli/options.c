@@ -243,11 +243,6 @@ int parse_bytes(const char *text, size_t *value)
     return 1;
 }
 
-int take_memory(const char *command_name, const char *text, size_t *value)
-{
-    return parse_bytes(text, value) ? -1 : usage(command_name, "--memory %s: not a number of bytes, as 512M or 2G", text);
-}
-
 int parse_setting(char *text, gno_setting *setting)
 {
     char *equals = strchr(text, '=');

@@ -58,9 +58,6 @@ int parse_bytes(const char *text, size_t *value);
     "stop with a message before more than SIZE bytes are held, e.g. 512M\n" \
     "or 2G (what the file libraries take for themselves is not counted)"
 
-/* The argument of --memory; returns -1, or an exit status, its message being out. */
-int take_memory(const char *command_name, const char *text, size_t *value);
-
 /* KEY=VALUE, cut in place at the first equals sign; the setting points into the text. */
 int parse_setting(char *text, gno_setting *setting);
 

@@ -10,29 +10,28 @@
 #include <unistd.h>
 
 typedef struct kind {
-    const char *extension;
     int depths[2];
     int layers;
 } kind;
 
-static const kind kinds[] = {{".png", {8, 16}, 0}, {".exr", {16, 32}, 1}, {".pfm", {32, 32}, 0}};
+static const char *const extensions_of_kinds[] = {".png", ".exr", ".pfm", NULL};
+static const kind kinds[] = {{{8, 16}, 0}, {{16, 32}, 1}, {{32, 32}, 0}};
 
-enum { KINDS = sizeof kinds / sizeof kinds[0] };
+int output_extension(const char *path, const char *const *extensions)
+{
+    const char *slash = strrchr(path, '/'), *dot = strrchr(slash != NULL ? slash : path, '.');
+    for (int i = 0; dot != NULL && extensions[i] != NULL; i++) {
+        if (strcasecmp(dot, extensions[i]) == 0) {
+            return i;
+        }
+    }
+    return -1;
+}
 
 static const kind *kind_of(const char *path)
 {
-    if (strcmp(path, "-") == 0) {
-        return &kinds[0];
-    }
-    const char *slash = strrchr(path, '/');
-    const char *name = slash != NULL ? slash + 1 : path;
-    const char *dot = strrchr(name, '.');
-    for (int i = 0; dot != NULL && i < KINDS; i++) {
-        if (strcasecmp(dot, kinds[i].extension) == 0) {
-            return &kinds[i];
-        }
-    }
-    return NULL;
+    const int found = strcmp(path, "-") == 0 ? 0 : output_extension(path, extensions_of_kinds);
+    return found >= 0 ? &kinds[found] : NULL;
 }
 
 int output_is_stream(const char *path)

@@ -21,6 +21,9 @@ int outputs_check(outputs *files, int depth, const char *command_name);
 /* Whether a file can come to be under this name; says so when not. Returns an exit status. */
 int output_check_place(const char *path);
 
+/* Whether a path's extension, ".csv", is in a list that ends with NULL, in any case. Returns its place in the list, or -1. */
+int output_extension(const char *path, const char *const *extensions);
+
 /* The scene's name with another extension, without its folder: folder/town.yaml -> town.png. To be freed; NULL when memory fails. */
 char *output_default(const char *scene_path, const char *extension);
 

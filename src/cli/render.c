@@ -8,13 +8,12 @@
 #include "cli/layers.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/progress.h"
+#include "cli/session.h"
 #include "cli/stats.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 enum option_id { OUTPUT, FRAMES, SIZE, LINES, THREADS, EXPOSURE, DEPTH, TERMINATOR, DETAILS, ENGINE, AOV, RANKS, MEMORY, SET, STATS, QUIET, HELP };
 
@@ -53,21 +52,16 @@ static const option options[] = {
 enum { OPTIONS = sizeof options / sizeof options[0] };
 
 typedef struct job {
-    const char *scene_path;
+    scene_wish scene;
     outputs files;
     frame_wish frames;
     char *default_output;
-    gno_setting *settings;
-    size_t setting_count;
-    int width, height; /* 0: the scene's */
     int details;       /* -1: the scene's */
     int depth;
     double exposure;
     gno_render_def def;
     layers_wish layers;
     const char *stats_path;
-    size_t memory; /* ceiling, 0: none */
-    int quiet;
 } job;
 
 static int help(void)
@@ -111,7 +105,6 @@ static int parse_lines(const char *text, gno_render_def *def)
 static int take_option(void *job_of, int id, char *value)
 {
     job *work = job_of;
-    const char *name = options[id].name;
     switch (id) {
     case OUTPUT:
         if (work->files.count == MOST_OUTPUTS) {
@@ -121,17 +114,10 @@ static int take_option(void *job_of, int id, char *value)
         return -1;
     case FRAMES:
         return frames_parse(value, &work->frames) ? -1 : usage("render", "--frames %s: not all, a frame, or A:B with A not after B", value);
-    case SIZE:
-        return parse_size(value, &work->width, &work->height) ? -1
-                                       : usage("render", "--size %s: not WIDTHxHEIGHT, each from 1 to %d", value, GNO_MAX_IMAGE_SIDE);
     case LINES:
         return parse_lines(value, &work->def)
                    ? -1
                    : usage("render", "--lines %s: not a number from 1 to %d, nor B:N with N an odd multiple of B", value, GNO_MAX_LINES);
-    case THREADS:
-        return parse_int(value, 0, GNO_MAX_THREADS, &work->def.threads)
-                   ? -1
-                   : usage("render", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
     case EXPOSURE:
         return parse_real(value, &work->exposure) && work->exposure >= 0.0 ? -1 : usage("render", "--exposure %s: not a number, 0 or more", value);
     case DEPTH:
@@ -156,20 +142,13 @@ static int take_option(void *job_of, int id, char *value)
         return parse_int(value, 1, GNO_MAX_RANKS, &work->layers.ranks)
                    ? -1
                    : usage("render", "--ranks %s: not a number from 1 to %d", value, GNO_MAX_RANKS);
-    case MEMORY:
-        return take_memory("render", value, &work->memory);
-    case SET:
-        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("render", "--set %s: not KEY=VALUE", value);
     case STATS:
         work->stats_path = value;
-        return -1;
-    case QUIET:
-        work->quiet = 1;
         return -1;
     case HELP:
         return help();
     default:
-        return usage("render", "--%s is not known here", name);
+        return take_common(&work->scene, "render", options[id].name, value);
     }
 }
 
@@ -177,13 +156,13 @@ static int take_option(void *job_of, int id, char *value)
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("render", options, OPTIONS, argc, argv);
-    const int wrong = options_read(&reader, take_option, work, &work->scene_path);
+    const int wrong = options_read(&reader, take_option, work, &work->scene.path);
     if (wrong >= 0) {
         return wrong;
     }
     if (work->files.count == 0) {
         const int several = work->frames.all || work->frames.last > work->frames.first;
-        work->default_output = output_default(work->scene_path, several ? "_%04d.png" : ".png");
+        work->default_output = output_default(work->scene.path, several ? "_%04d.png" : ".png");
         if (work->default_output == NULL) {
             say("out of memory");
             return EXIT_FAILED;
@@ -206,40 +185,11 @@ static int read_arguments(job *work, int argc, char **argv)
     return status != EXIT_DONE ? status : -1;
 }
 
-static int report(gno_context *context, progress *shown)
-{
-    progress_clear(shown);
-    if (interrupt_signal() != 0) {
-        say("interrupted; nothing half done is left");
-        return EXIT_SIGNAL + interrupt_signal();
-    }
-    say("%s", gno_context_message(context));
-    return EXIT_FAILED;
-}
-
-static gno_status load(const job *work, gno_context *context, gno_scene **scene)
-{
-    gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, scene);
-    if (status == GNO_OK && work->details >= 0) {
-        status = gno_scene_find_details(*scene, work->details);
-    }
-    if (status == GNO_OK && work->width != 0) {
-        gno_image_def image = gno_scene_image(*scene);
-        image.width = work->width;
-        image.height = work->height;
-        status = gno_scene_set_image(*scene, &image);
-    }
-    return status;
-}
-
-/* A stream leaves nothing behind, and a reader that does not read could hold it up for ever: there a signal ends the
- * program at once. A file that is being written is given up and leaves nothing behind. */
 static gno_status write_picture(const job *work, gno_scene *scene, int i, int frame, const float *rgb, const gno_layers *layers)
 {
     gno_context *context = gno_scene_context(scene);
     const gno_image_def image = gno_scene_image(scene);
     gno_picture_def def = gno_picture_def_default();
-    const int stream = output_is_stream(work->files.paths[i]);
     char *path = frame < 0 ? NULL : frame_name(work->files.paths[i], frame);
     const char *name = frame < 0 ? work->files.paths[i] : path;
     if (name == NULL) {
@@ -247,15 +197,11 @@ static gno_status write_picture(const job *work, gno_scene *scene, int i, int fr
     }
     def.exposure = work->exposure;
     def.depth = work->files.depths[i];
-    if (stream) {
-        interrupt_release();
-    }
+    const int stream = output_begin(work->files.paths[i]);
     const gno_status status = layers != NULL && output_has_layers(name)
                                   ? gno_picture_write_layers(scene, name, &def, rgb, layers)
                                   : gno_picture_write(context, name, &def, image.width, image.height, rgb);
-    if (stream && status == GNO_OK) {
-        interrupt_catch();
-    }
+    output_end(stream, status);
     free(path);
     return status;
 }
@@ -302,34 +248,24 @@ static gno_status run_frame(const job *work, gno_scene *scene, const frame_plan 
     return status;
 }
 
-static int thread_count(const job *work)
-{
-    const long processors = sysconf(_SC_NPROCESSORS_ONLN);
-    return work->def.threads > 0            ? work->def.threads
-           : processors < 1                 ? 1
-           : processors > GNO_MAX_THREADS ? GNO_MAX_THREADS
-                                            : (int)processors;
-}
-
-static gno_status run_frames(const job *work, gno_scene *scene, const frame_plan *plan, const gno_render_def *how, float *rgb,
-                             progress *shown, run_stats *stats)
+static gno_status run_frames(const job *work, session *s, const frame_plan *plan, const gno_render_def *how, float *rgb, run_stats *stats)
 {
     gno_status status = GNO_OK;
     interrupt_catch();
     for (int i = 0; i < plan->count && status == GNO_OK; i++) {
-        progress_set_frame(shown, i, plan->count);
-        status = run_frame(work, scene, plan, plan->first + i, how, rgb, &stats->frames[stats->frame_count++]);
+        progress_set_frame(&s->shown, i, plan->count);
+        status = run_frame(work, s->scene, plan, plan->first + i, how, rgb, &stats->frames[stats->frame_count++]);
     }
-    progress_clear(shown);
     return status;
 }
 
 /* Buffers are made once for all frames. Through the context, so that the picture is part of the peak memory told by --stats. */
-static int run_scene(const job *work, gno_context *context, gno_scene *scene, const frame_plan *plan, progress *shown, double begun)
+static int run_scene(const job *work, session *s, const frame_plan *plan)
 {
-    const gno_image_def image = gno_scene_image(scene);
+    gno_context *context = s->context;
+    const gno_image_def image = gno_scene_image(s->scene);
     const size_t bytes = (size_t)image.width * (size_t)image.height * 3 * sizeof(float);
-    run_stats stats = {work->scene_path, image.width, image.height, thread_count(work), plan->numbered, 0, NULL, seconds_now() - begun, 0, 0};
+    run_stats stats = {work->scene.path, image.width, image.height, session_threads(s), plan->numbered, 0, NULL, seconds_now() - s->begun, 0, 0};
     gno_render_def how = work->def;
     layer_buffers buffers;
     const int has_layers = work->layers.wanted != 0;
@@ -343,11 +279,12 @@ static int run_scene(const job *work, gno_context *context, gno_scene *scene, co
         return no_room(context, "a picture", &image, (double)bytes);
     }
     int result = EXIT_FAILED;
-    if (has_layers && !layers_allocate(&work->layers, scene, &buffers)) {
+    if (has_layers && !layers_allocate(&work->layers, s->scene, &buffers)) {
         no_room(context, "the layers of a picture", &image, 0.0);
     } else {
+        how.threads = work->scene.threads;
         how.layers = has_layers ? &buffers.layers : NULL;
-        result = run_frames(work, scene, plan, &how, rgb, shown, &stats) == GNO_OK ? EXIT_DONE : report(context, shown);
+        result = session_result(s, run_frames(work, s, plan, &how, rgb, &stats));
         if (has_layers) {
             layers_free(&buffers);
         }
@@ -355,9 +292,9 @@ static int run_scene(const job *work, gno_context *context, gno_scene *scene, co
     gno_context_realloc(context, rgb, bytes, 0);
     if (result == EXIT_DONE) {
         interrupt_release();
-        stats.total_seconds = seconds_now() - begun;
+        stats.total_seconds = seconds_now() - s->begun;
         gno_context_memory(context, &stats.peak_memory);
-        for (int i = 0; i < work->files.count && shown->terminal && !work->quiet; i++) {
+        for (int i = 0; i < work->files.count && s->shown.terminal && !work->scene.quiet; i++) {
             say("%s: %d x %d in %.2f s", work->files.paths[i], image.width, image.height, stats.total_seconds);
         }
         result = work->stats_path != NULL ? stats_write(work->stats_path, &stats) : EXIT_DONE;
@@ -368,50 +305,39 @@ static int run_scene(const job *work, gno_context *context, gno_scene *scene, co
 
 static int run_job(const job *work)
 {
-    progress shown = progress_make(work->quiet);
-    const double begun = seconds_now();
-    gno_context_def def = progress_context_def(&shown);
-    def.max_memory = work->memory;
-    gno_context *context = NULL;
-    gno_scene *scene = NULL;
-    if (gno_context_create(&def, &context) != GNO_OK) {
-        say("out of memory");
-        return EXIT_FAILED;
+    session s;
+    frame_plan plan;
+    session_begin(&s, &work->scene);
+    int status = session_load(&s);
+    if (status < 0 && work->details >= 0) {
+        const gno_status found = gno_scene_find_details(s.scene, work->details);
+        status = found == GNO_OK ? -1 : session_result(&s, found);
     }
-    int status;
-    if (load(work, context, &scene) == GNO_OK) {
-        frame_plan plan;
-        progress_clear(&shown);
-        status = frames_plan(&work->frames, work->scene_path, scene, work->files.paths, work->files.count, &plan);
-        status = status < 0 ? run_scene(work, context, scene, &plan, &shown, begun) : status;
-    } else {
-        status = report(context, &shown);
+    if (status < 0) {
+        progress_clear(&s.shown);
+        status = frames_plan(&work->frames, work->scene.path, s.scene, work->files.paths, work->files.count, &plan);
     }
-    gno_scene_destroy(scene);
-    gno_context_destroy(context);
+    if (status < 0) {
+        status = run_scene(work, &s, &plan);
+    }
+    session_end(&s);
     return status;
 }
 
 static int run(int argc, char **argv)
 {
     job work;
+    int status = EXIT_FAILED;
     memset(&work, 0, sizeof work);
     work.exposure = 1.0;
     work.details = -1;
     work.def = gno_render_def_default();
     work.layers = layers_none();
-    /* No more settings than arguments; one more so that the size is never zero. */
-    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
-    int status = EXIT_FAILED;
-    if (work.settings == NULL) {
-        say("out of memory");
-    } else {
+    if (scene_wish_make(&work.scene, argc)) {
         status = read_arguments(&work, argc, argv);
-        if (status < 0) {
-            status = run_job(&work);
-        }
+        status = status < 0 ? run_job(&work) : status;
     }
-    free(work.settings);
+    scene_wish_free(&work.scene);
     free(work.default_output);
     return status;
 }

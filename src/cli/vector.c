@@ -6,12 +6,11 @@
 #include "cli/interrupt.h"
 #include "cli/options.h"
 #include "cli/outputs.h"
-#include "cli/progress.h"
+#include "cli/session.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 enum option_id { OUTPUT, FORMAT, SIZE, EDGES, EDGE_WIDTH, EDGE_COLOUR, CREASE, BACKGROUND, UNDERLAY, DIGITS, TITLE, EXPOSURE, THREADS, SET, MEMORY, QUIET, HELP };
 
@@ -43,16 +42,11 @@ static const option options[] = {
 enum { OPTIONS = sizeof options / sizeof options[0] };
 
 typedef struct job {
-    const char *scene_path;
+    scene_wish scene;
     const char *paths[MOST_OUTPUTS];
     int path_count;
     char *default_output;
-    gno_setting *settings;
-    size_t setting_count;
-    int width, height; /* 0: the scene's */
     gno_vector_def def;
-    size_t memory; /* ceiling, 0: none */
-    int quiet;
 } job;
 
 static int help(void)
@@ -143,10 +137,6 @@ static int take_option(void *job_of, int id, char *value)
         index = choose(value, formats);
         def->format = index == 0 ? GNO_VECTOR_SVG : GNO_VECTOR_PDF;
         return index >= 0 ? -1 : usage("vector", "--format %s: not one of svg, pdf", value);
-    case SIZE:
-        return parse_size(value, &work->width, &work->height)
-                   ? -1
-                   : usage("vector", "--size %s: not WIDTHxHEIGHT, each from 1 to %d", value, GNO_MAX_IMAGE_SIDE);
     case EDGES:
     case EDGE_WIDTH:
     case EDGE_COLOUR:
@@ -165,34 +155,20 @@ static int take_option(void *job_of, int id, char *value)
         return -1;
     case EXPOSURE:
         return parse_real(value, &def->exposure) && def->exposure >= 0.0 ? -1 : usage("vector", "--exposure %s: not a number, 0 or more", value);
-    case THREADS:
-        return parse_int(value, 0, GNO_MAX_THREADS, &def->threads)
-                   ? -1
-                   : usage("vector", "--threads %s: not a number from 0 to %d", value, GNO_MAX_THREADS);
-    case SET:
-        return parse_setting(value, &work->settings[work->setting_count++]) ? -1 : usage("vector", "--set %s: not KEY=VALUE", value);
-    case MEMORY:
-        return take_memory("vector", value, &work->memory);
-    case QUIET:
-        work->quiet = 1;
-        return -1;
-    default:
+    case HELP:
         return help();
+    default:
+        return take_common(&work->scene, "vector", options[id].name, value);
     }
-}
-
-static int has_extension(const char *path)
-{
-    const size_t length = strlen(path);
-    return length >= 4 && (strcasecmp(path + length - 4, ".svg") == 0 || strcasecmp(path + length - 4, ".pdf") == 0);
 }
 
 /* Names and places of the files, before the work starts; returns an exit status, or -1 to go on. */
 static int check_outputs(job *work)
 {
+    static const char *const extensions[] = {".svg", ".pdf", NULL};
     int standard = 0;
     if (work->path_count == 0) {
-        work->default_output = output_default(work->scene_path, work->def.format == GNO_VECTOR_PDF ? ".pdf" : ".svg");
+        work->default_output = output_default(work->scene.path, work->def.format == GNO_VECTOR_PDF ? ".pdf" : ".svg");
         if (work->default_output == NULL) {
             say("out of memory");
             return EXIT_FAILED;
@@ -205,7 +181,7 @@ static int check_outputs(job *work)
         if (work->def.format == GNO_VECTOR_AUTO && strcmp(path, "-") == 0) {
             return usage("vector", "standard output needs --format svg or --format pdf");
         }
-        if (work->def.format == GNO_VECTOR_AUTO && !has_extension(path)) {
+        if (work->def.format == GNO_VECTOR_AUTO && output_extension(path, extensions) < 0) {
             return usage("vector", "%s: the extension is not one of .svg, .pdf", path);
         }
     }
@@ -225,36 +201,20 @@ static int check_outputs(job *work)
 static int read_arguments(job *work, int argc, char **argv)
 {
     option_reader reader = option_reader_make("vector", options, OPTIONS, argc, argv);
-    const int wrong = options_read(&reader, take_option, work, &work->scene_path);
+    const int wrong = options_read(&reader, take_option, work, &work->scene.path);
     return wrong >= 0 ? wrong : check_outputs(work);
 }
 
-static gno_status load(const job *work, gno_context *context, gno_scene **scene)
-{
-    gno_status status = gno_scene_load(context, work->scene_path, work->settings, work->setting_count, scene);
-    if (status == GNO_OK && work->width != 0) {
-        gno_image_def image = gno_scene_image(*scene);
-        image.width = work->width;
-        image.height = work->height;
-        status = gno_scene_set_image(*scene, &image);
-    }
-    return status;
-}
-
-/* A signal ends the work on a file and leaves nothing behind; on a stream, which leaves nothing either, the program itself: see render.c. */
 static gno_status draw(const job *work, gno_scene *scene)
 {
     gno_status status = GNO_OK;
+    gno_vector_def def = work->def;
+    def.threads = work->scene.threads;
     interrupt_catch();
     for (int i = 0; i < work->path_count && status == GNO_OK; i++) {
-        const int stream = output_is_stream(work->paths[i]);
-        if (stream) {
-            interrupt_release();
-        }
-        status = gno_vector_write(scene, work->paths[i], &work->def);
-        if (stream && status == GNO_OK) {
-            interrupt_catch();
-        }
+        const int stream = output_begin(work->paths[i]);
+        status = gno_vector_write(scene, work->paths[i], &def);
+        output_end(stream, status);
     }
     if (status == GNO_OK && interrupt_signal() != 0) {
         status = GNO_ERROR_CANCELLED;
@@ -264,51 +224,28 @@ static gno_status draw(const job *work, gno_scene *scene)
 
 static int run_job(const job *work)
 {
-    progress shown = progress_make(work->quiet);
-    gno_context_def def = progress_context_def(&shown);
-    gno_context *context = NULL;
-    gno_scene *scene = NULL;
-    int result = EXIT_DONE;
-    def.max_memory = work->memory;
-    if (gno_context_create(&def, &context) != GNO_OK) {
-        say("out of memory");
-        return EXIT_FAILED;
-    }
-    gno_status status = load(work, context, &scene);
-    if (status == GNO_OK) {
-        status = draw(work, scene);
-    }
-    progress_clear(&shown);
-    if (status != GNO_OK && interrupt_signal() != 0) {
-        say("interrupted; nothing half done is left");
-        result = EXIT_SIGNAL + interrupt_signal();
-    } else if (status != GNO_OK) {
-        say("%s", gno_context_message(context));
-        result = EXIT_FAILED;
+    session s;
+    session_begin(&s, &work->scene);
+    int result = session_load(&s);
+    if (result < 0) {
+        result = session_result(&s, draw(work, s.scene));
     }
     interrupt_release();
-    gno_scene_destroy(scene);
-    gno_context_destroy(context);
+    session_end(&s);
     return result;
 }
 
 static int run(int argc, char **argv)
 {
     job work;
+    int status = EXIT_FAILED;
     memset(&work, 0, sizeof work);
     work.def = gno_vector_def_default();
-    /* No more settings than arguments; one more so that the size is never zero. */
-    work.settings = calloc((size_t)argc + 1, sizeof *work.settings);
-    int status = EXIT_FAILED;
-    if (work.settings == NULL) {
-        say("out of memory");
-    } else {
+    if (scene_wish_make(&work.scene, argc)) {
         status = read_arguments(&work, argc, argv);
-        if (status < 0) {
-            status = run_job(&work);
-        }
+        status = status < 0 ? run_job(&work) : status;
     }
-    free(work.settings);
+    scene_wish_free(&work.scene);
     free(work.default_output);
     return status;
 }
