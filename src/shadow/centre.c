@@ -183,7 +183,7 @@ gno_status gnoi_centre_make(const gno_scene *scene, const gnoi_lamp *lamp, const
         return GNO_ERROR_MEMORY;
     for (size_t i = 0; i < prep->poly_count; i++)
         set_stand(centre, &prep->polys[i], see_through, &centre->stands[i]);
-    status = settle_parts(centre) ? gnoi_tree_build_part(scene, lamp, NULL, view ? GNOI_TREE_SEEN : GNOI_TREE_ALL, &centre->tree) : GNO_ERROR_MEMORY;
+    status = settle_parts(centre) ? gnoi_tree_build_part(scene, lamp, view ? GNOI_TREE_SEEN : GNOI_TREE_ALL, &centre->tree) : GNO_ERROR_MEMORY;
     if (status)
         gnoi_centre_free(centre);
     return status;

@@ -1,147 +1,12 @@
 /* column.c -- finding the casters of receivers: see column.h. */
-#include "shadow/pair.h"
+#include "shadow/region.h"
 #include <stdlib.h>
 
-/* A candidate is ruled out by an edge of the region when it stays outside of it by this share of the edge's length, far more than the
- * rounding of single precision. What comes nearer is tested exactly: a sliver left lit would be a leak. */
-#define PROBE_SLACK -1e-6
-
-/* So many receivers wait for each other, while the box around them is no larger than so many times the newest one's. */
-#define REQUESTS 64
-#define REQUEST_SPREAD 16.0f
+/* So many receivers wait for each other. */
+#define REQUESTS 512
 
 /* Columns of so many casters or contour edges are sorted into rows. */
 #define LONG_COLUMN 8
-
-/* ---- region on the light's plane --------------------------------------------------------------------------------- */
-
-/* Corners of the region on the receiver's plane; 0 when the plane's horizon passes through the region. */
-static int region_corners(const gnoi_view *view, const gnoi_receiver *r, vec3 corners[4])
-{
-    double x[4], y[4], z[4], zmax = 0;
-    for (int i = 0; i < 4; i++) {
-        x[i] = i == 1 || i == 2 ? r->x1 : r->x0;
-        y[i] = i >= 2 ? r->y1 : r->y0;
-        z[i] = gnoi_plane_at(&r->nearness, x[i], y[i]);
-        zmax = fabs(z[i]) > zmax ? fabs(z[i]) : zmax;
-    }
-    for (int i = 0; i < 4; i++) {
-        if (!view->orthographic && !(z[i] > 1e-6 * zmax))
-            return 0;
-        corners[i] = gnoi_view_point(view, x[i], y[i], z[i]);
-    }
-    return 1;
-}
-
-static float min_f(float a, float b) { return a < b ? a : b; }
-static float max_f(float a, float b) { return a > b ? a : b; }
-
-/* Both boxes hold the receiver's region, so their common part does. */
-static void box_intersect(gnoi_lbox *a, const gnoi_lbox *b)
-{
-    a->u0 = max_f(a->u0, b->u0);
-    a->u1 = min_f(a->u1, b->u1);
-    a->v0 = max_f(a->v0, b->v0);
-    a->v1 = min_f(a->v1, b->v1);
-    a->z1 = min_f(a->z1, b->z1);
-}
-
-/* The convex region's edges on the light's plane. */
-static void set_probe_edges(gnoi_probe *probe, const gnoi_lpoint *p, int count)
-{
-    double area = 0;
-    for (int i = 1; i + 1 < count; i++)
-        area += (p[i].u - p[0].u) * (p[i + 1].v - p[0].v) - (p[i].v - p[0].v) * (p[i + 1].u - p[0].u);
-    for (int i = 0; i < count; i++) {
-        const gnoi_lpoint *a = &p[i], *b = &p[i + 1 < count ? i + 1 : 0];
-        double s = area < 0 ? -1 : 1, du = (b->u - a->u) * s, dv = (b->v - a->v) * s;
-        probe->a[i] = -dv;
-        probe->b[i] = du;
-        probe->c[i] = dv * a->u - du * a->v;
-        probe->slack[i] = PROBE_SLACK * (du * du + dv * dv);
-    }
-    probe->edge_count = count;
-}
-
-/* The receiver's plane as nearness to the light over (u,v): from three of the points, when they span it. */
-static int set_probe_plane(gnoi_probe *probe, const gnoi_pair *p, const gnoi_lpoint *l, int count)
-{
-    double lift = 0.5 * p->tolerance / p->lamp_height, best = 0;
-    int k = 1;
-    const gnoi_lpoint *a = &l[0], *b, *c;
-    for (int i = 1; i + 1 < count; i++) {
-        double area = fabs((l[i].u - a->u) * (l[i + 1].v - a->v) - (l[i].v - a->v) * (l[i + 1].u - a->u));
-        if (area > best) {
-            best = area;
-            k = i;
-        }
-    }
-    if (!(best > 0))
-        return 0;
-    b = &l[k];
-    c = &l[k + 1];
-    best = (b->u - a->u) * (c->v - a->v) - (b->v - a->v) * (c->u - a->u);
-    probe->qa = ((b->q - a->q) * (c->v - a->v) - (b->v - a->v) * (c->q - a->q)) / best;
-    probe->qb = ((b->u - a->u) * (c->q - a->q) - (b->q - a->q) * (c->u - a->u)) / best;
-    probe->qc = a->q - probe->qa * a->u - probe->qb * a->v;
-    /* Height t over the plane lifts nearness by t q / H (point lamp) or t / cosine. */
-    probe->lift = p->lamp->directional ? lift : lift * a->q;
-    probe->qc += probe->lift;
-    return 1;
-}
-
-/* The point of the receiver's plane in the middle of a box on the light's plane. */
-static vec3 point_below(const gnoi_pair *p, const gnoi_frame *frame, const gnoi_lbox *box)
-{
-    vec3 from, along;
-    gnoi_frame_ray(frame, 0.5 * ((double)box->u0 + (double)box->u1), 0.5 * ((double)box->v0 + (double)box->v1), &from, &along);
-    return v3_mad(from, along, -gnoi_form_at(&p->h, from) / v3_dot(p->h.a, along));
-}
-
-static vec3 mean_of(const vec3 *points, int count)
-{
-    vec3 sum = v3(0, 0, 0);
-    for (int i = 0; i < count; i++)
-        sum = v3_add(sum, points[i]);
-    return v3_scale(sum, 1.0 / count);
-}
-
-/* Boxes of the region on the light's plane; *probed tells whether probe and centre may be used (one face only). */
-static int region_boxes(const gnoi_pair *p, const gnoi_view *view, const gnoi_frame *frame, gnoi_lbox boxes[6], gnoi_probe *probe,
-                        int *probed, vec3 *centre)
-{
-    const gnoi_receiver *r = p->receiver;
-    vec3 hull[GNOI_FRAME_POINTS], corners[4];
-    gnoi_lpoint located[GNOI_FRAME_POINTS];
-    int hull_count = gnoi_poly_hull(p->scene, r->poly, hull), n;
-    *probed = 0;
-    if (r->whole) {
-        if (!gnoi_frame_locate(frame, hull, hull_count, located))
-            return gnoi_frame_boxes(frame, hull, hull_count, boxes);
-        gnoi_frame_box(frame, located, hull_count, &boxes[0]);
-        probe->edge_count = 0;
-        if (p->triangle)
-            set_probe_edges(probe, located, 3);
-        *probed = set_probe_plane(probe, p, located, hull_count);
-        *centre = mean_of(hull, 3);
-        return 1;
-    }
-    if (!region_corners(view, r, corners))
-        return gnoi_frame_boxes(frame, hull, hull_count, boxes);
-    if (!gnoi_frame_locate(frame, corners, 4, located))
-        return frame->faces == 6 ? gnoi_frame_boxes(frame, corners, 4, boxes) : gnoi_frame_boxes(frame, hull, hull_count, boxes);
-    n = frame->faces == 1 ? gnoi_frame_boxes(frame, hull, hull_count, boxes) : 0;
-    gnoi_lbox part;
-    gnoi_frame_box(frame, located, 4, &part);
-    set_probe_edges(probe, located, 4);
-    *probed = set_probe_plane(probe, p, located, 4);
-    if (n == 1)
-        box_intersect(&boxes[0], &part);
-    else
-        boxes[0] = part;
-    *centre = point_below(p, frame, &boxes[0]);
-    return 1;
-}
 
 /* ---- columns ------------------------------------------------------------------------------------------------------ */
 
@@ -177,11 +42,9 @@ static void drop_repeats(gnoi_list *list)
 }
 
 struct gnoi_request {
-    gnoi_pair p;
+    const gnoi_receiver *receiver;
     gnoi_column *column;
     gnoi_lbox box;
-    gnoi_probe probe;
-    vec3 centre; /* a point of the region, on the receiver's plane */
 };
 
 /* Rows of the receiver's region that a caster or a contour edge may cross. */
@@ -246,7 +109,7 @@ static int try_found(const gnoi_pair *p, const gnoi_view *view, gnoi_columns *co
     return 1;
 }
 
-static int settle(const gnoi_pair *p, gnoi_columns *columns, gnoi_column *column, int all)
+static int settle(const gnoi_receiver *receiver, const gnoi_lamp *lamp, gnoi_columns *columns, gnoi_column *column, int all)
 {
     if (all) {
         columns->full++;
@@ -259,11 +122,11 @@ static int settle(const gnoi_pair *p, gnoi_columns *columns, gnoi_column *column
     }
     column->caster_count = (uint32_t)(columns->caster_count - column->caster);
     columns->ones += column->caster_count + column->rim_count;
-    column->state = column->caster_count || column->sheet || p->lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
+    column->state = column->caster_count || column->sheet || lamp->spot ? GNOI_COLUMN_SPLIT : GNOI_COLUMN_LIT;
     return (column->caster_count < LONG_COLUMN ||
-            sort_into_rows(p->receiver, columns, caster_rows, column->caster, column->caster_count, &column->rows)) &&
+            sort_into_rows(receiver, columns, caster_rows, column->caster, column->caster_count, &column->rows)) &&
            (column->rim_count < LONG_COLUMN ||
-            sort_into_rows(p->receiver, columns, rim_rows, column->rim, column->rim_count, &column->rim_rows));
+            sort_into_rows(receiver, columns, rim_rows, column->rim, column->rim_count, &column->rim_rows));
 }
 
 /* One by one: single casters and far sides alike. */
@@ -273,49 +136,85 @@ static int settle_apart(const gnoi_pair *p, const gnoi_view *view, const gnoi_ca
     int all = 0;
     columns->found.count = 0;
     for (int i = 0; i < count; i++)
-        if (!gnoi_tree_query(columns->context, &casters->single, NULL, &boxes[i], NULL, &columns->found) ||
-            !gnoi_tree_query(columns->context, &casters->far, NULL, &boxes[i], NULL, &columns->found))
+        if (!gnoi_tree_query(columns->context, &casters->single, &boxes[i], NULL, &columns->found) ||
+            !gnoi_tree_query(columns->context, &casters->far, &boxes[i], NULL, &columns->found))
             return 0;
     if (count > 1)
         drop_repeats(&columns->found);
-    return try_found(p, view, columns, &all) && settle(p, columns, column, all);
+    return try_found(p, view, columns, &all) && settle(p->receiver, p->lamp, columns, column, all);
 }
 
-static int settle_request(const struct gnoi_request *r, const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns)
-{
-    gno_context *context = columns->context;
-    gnoi_sheet_state sheet;
-    int all;
-    r->column->caster = (uint32_t)columns->caster_count;
-    r->column->rim = (uint32_t)columns->rim_count;
-    sheet = gnoi_sheet_try(&r->p, casters, &r->box, &r->probe, r->centre, columns, r->column);
-    all = sheet == GNOI_SHEET_ALL;
-    columns->found.count = 0;
-    if (sheet == GNOI_SHEET_NO_MEMORY ||
-        (sheet == GNOI_SHEET_PIERCED &&
-         !gnoi_tree_query(context, &casters->far, &columns->far_front, &r->box, &r->probe, &columns->found)) ||
-        (!all && !gnoi_tree_query(context, &casters->single, &columns->single_front, &r->box, &r->probe, &columns->found)))
-        return 0;
-    return try_found(&r->p, view, columns, &all) && settle(&r->p, columns, r->column, all);
-}
+/* More nodes of single casters than these are not looked at one by one. */
+#define FEW_SINGLE 2
 
-int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns)
+/* Gathers for the waiting receivers in part->box what was gathered for more of them (NULL: from the trees). fine: what they
+ * can be asked about one by one. */
+static int gather(const gno_scene *scene, const gnoi_casters *casters, const gnoi_near *whole, gnoi_near *part, int fine)
 {
-    if (columns->request_count == 0)
-        return 1;
-    if (!gnoi_tree_gather(columns->context, &casters->single, &columns->request_box, &columns->single_front) ||
-        !gnoi_tree_gather(columns->context, &casters->far, &columns->request_box, &columns->far_front))
+    gnoi_grain grain = {fine ? -1 : gnoi_box_side(&part->box), 1}, all = {grain.side, 0};
+    if (!gnoi_gather(scene->context, &casters->single, whole ? &whole->single : NULL, &part->box, all, &part->single) ||
+        !gnoi_gather(scene->context, &casters->far, whole ? &whole->far : NULL, &part->box, grain, &part->far))
         return 0;
-    columns->rim_gathered = 0;
-    for (size_t i = 0; i < columns->request_count; i++)
-        if (!settle_request(&columns->requests[i], view, casters, columns))
-            return 0;
-    columns->request_count = 0;
+    part->rims = 0;
+    part->whole = whole;
+    part->fine = fine;
+    if (part->single.count <= FEW_SINGLE)
+        gnoi_gathered_drop_behind(scene, &part->box, &part->single);
     return 1;
 }
 
-static float box_side(const gnoi_lbox *b) { return max_f(b->u1 - b->u0, b->v1 - b->v0); }
+/* What is known of how the far sides lie over every receiver of a group: nothing where it is PART. */
+static int look_at_group(const struct gnoi_request *r, const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns,
+                         gnoi_sheet_state *state)
+{
+    gnoi_near *near = columns->near;
+    gnoi_region region;
+    gnoi_lbox boxes[6];
+    int box_count;
+    gnoi_pair p;
+    *state = GNOI_SHEET_NOWHERE;
+    if (near->far.count == 0)
+        return 1;
+    *state = GNOI_SHEET_PART;
+    if (near->far.level > 0 || gnoi_frame_face(&casters->far.frame, (double)near->box.u0) != gnoi_frame_face(&casters->far.frame, (double)near->box.u1))
+        return 1;
+    if (!gnoi_sheet_gather_rims(casters, columns))
+        return 0;
+    if (near->rim.count > 0 || !gnoi_pair_make(&p, columns->scene, view, columns->lamp, r->receiver) ||
+        !gnoi_region_make(columns->scene, view, &casters->far.frame, r->receiver, &region, boxes, &box_count))
+        return 1;
+    *state = gnoi_sheet_at(&p, casters, gnoi_region_centre(&p, &casters->far.frame, &region), columns);
+    return *state != GNOI_SHEET_NO_MEMORY;
+}
 
+/* One receiver for itself. */
+static int settle_request(const struct gnoi_request *r, const gnoi_view *view, const gnoi_casters *casters, gnoi_sheet_state sheet,
+                          gnoi_columns *columns)
+{
+    gno_context *context = columns->context;
+    gnoi_region region;
+    gnoi_lbox boxes[6];
+    gnoi_pair p;
+    gnoi_probe probe;
+    int box_count, all;
+    if (!gnoi_pair_make(&p, columns->scene, view, columns->lamp, r->receiver))
+        return 1;
+    if (!gnoi_region_make(columns->scene, view, &casters->far.frame, r->receiver, &region, boxes, &box_count) ||
+        !gnoi_region_probe(&p, &region, &probe))
+        return settle_apart(&p, view, casters, &r->box, 1, columns, r->column);
+    if (sheet == GNOI_SHEET_PART)
+        sheet = gnoi_sheet_try(&p, casters, &region, &probe, columns, r->column);
+    all = sheet == GNOI_SHEET_ALL;
+    columns->found.count = 0;
+    if (sheet == GNOI_SHEET_NO_MEMORY ||
+        (sheet == GNOI_SHEET_PIERCED && !gnoi_tree_query(context, &casters->far, &region.box, NULL, &columns->found)) ||
+        (!all && !gnoi_gathered_query(context, &columns->near->single, &region.box, &probe, &columns->found, NULL)))
+        return 0;
+    return try_found(&p, view, columns, &all) && settle(r->receiver, columns->lamp, columns, r->column, all);
+}
+
+static float min_f(float a, float b) { return a < b ? a : b; }
+static float max_f(float a, float b) { return a > b ? a : b; }
 static gnoi_lbox box_union(const gnoi_lbox *a, const gnoi_lbox *b)
 {
     gnoi_lbox r;
@@ -328,37 +227,101 @@ static gnoi_lbox box_union(const gnoi_lbox *a, const gnoi_lbox *b)
     return r;
 }
 
-/* Lets a receiver wait with its neighbours, after sending off those that it is no neighbour of. */
-static int wait_with_others(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_lbox *box,
-                            const gnoi_probe *probe, vec3 centre, gnoi_columns *columns, gnoi_column *column)
+/* A group of up to so many receivers is not halved. */
+#define SMALL_GROUP 4
+
+static gnoi_lbox box_of(const gnoi_columns *columns, const uint16_t *group, size_t count)
 {
-    struct gnoi_request *r;
-    gnoi_lbox all = columns->request_count ? box_union(&columns->request_box, box) : *box;
-    if (columns->request_count == REQUESTS || (columns->request_count && box_side(&all) > REQUEST_SPREAD * box_side(box))) {
-        if (!gnoi_columns_finish(view, casters, columns))
-            return 0;
-        all = *box;
+    gnoi_lbox box = columns->requests[group[0]].box;
+    for (size_t i = 1; i < count; i++)
+        box = box_union(&box, &columns->requests[group[i]].box);
+    return box;
+}
+
+/* Puts those with their middle in the lower half of the longer side first; returns how many. */
+static size_t halve(const gnoi_columns *columns, const gnoi_lbox *box, uint16_t *group, size_t count)
+{
+    int upright = box->v1 - box->v0 > box->u1 - box->u0;
+    float middle = upright ? box->v0 + box->v1 : box->u0 + box->u1;
+    size_t n = 0;
+    for (size_t i = 0; i < count; i++) {
+        const gnoi_lbox *b = &columns->requests[group[i]].box;
+        if ((upright ? b->v0 + b->v1 : b->u0 + b->u1) < middle) {
+            uint16_t swap = group[n];
+            group[n++] = group[i];
+            group[i] = swap;
+        }
     }
-    if (!gnoi_reserve(columns->context, (void **)&columns->requests, &columns->request_capacity, REQUESTS, sizeof *columns->requests))
-        return 0;
-    r = &columns->requests[columns->request_count++];
-    r->p = *p;
-    r->column = column;
-    r->box = *box;
-    r->probe = *probe;
-    r->centre = centre;
-    columns->request_box = all;
-    return 1;
+    return n > 0 && n < count ? n : count / 2;
+}
+
+static int settle_group(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns, uint16_t *group, size_t count);
+
+static int settle_halves(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns, uint16_t *group, size_t count)
+{
+    gnoi_near *near = columns->near;
+    size_t first = 0, half = halve(columns, &near->box, group, count);
+    int good = 1;
+    for (int k = 0; k < 2 && good; k++) {
+        near[1].box = box_of(columns, group + first, half);
+        good = gather(columns->scene, casters, near, near + 1, 0);
+        columns->near = near + 1;
+        good = good && settle_group(view, casters, columns, group + first, half);
+        columns->near = near;
+        first = half;
+        half = count - half;
+    }
+    return good;
+}
+
+/* Settles the requests whose numbers are in `group`; what is near them is in columns->near. */
+static int settle_group(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns, uint16_t *group, size_t count)
+{
+    gnoi_near *near = columns->near;
+    gnoi_sheet_state state;
+    int good = look_at_group(&columns->requests[group[0]], view, casters, columns, &state);
+    int alike = state == GNOI_SHEET_ALL || (state == GNOI_SHEET_NOWHERE && near->single.count == 0);
+    if (good && !alike && count > SMALL_GROUP && near < columns->nears + GNOI_NEAR_DEPTH - 2)
+        return settle_halves(view, casters, columns, group, count);
+    if (good && !alike) {
+        near[1].box = near->box;
+        columns->near = near + 1;
+        good = gather(columns->scene, casters, near, near + 1, 1) && look_at_group(&columns->requests[group[0]], view, casters, columns, &state);
+        alike = state == GNOI_SHEET_ALL || (state == GNOI_SHEET_NOWHERE && columns->near->single.count == 0);
+    }
+    for (size_t i = 0; i < count && good; i++) {
+        const struct gnoi_request *r = &columns->requests[group[i]];
+        r->column->caster = (uint32_t)columns->caster_count;
+        r->column->rim = (uint32_t)columns->rim_count;
+        good = alike ? settle(r->receiver, columns->lamp, columns, r->column, state == GNOI_SHEET_ALL)
+                     : settle_request(r, view, casters, state, columns);
+    }
+    columns->near = near;
+    return good;
+}
+
+int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi_columns *columns)
+{
+    uint16_t group[REQUESTS];
+    size_t count = columns->request_count;
+    columns->request_count = 0;
+    if (count == 0)
+        return 1;
+    for (size_t i = 0; i < count; i++)
+        group[i] = (uint16_t)i;
+    columns->near = columns->nears;
+    columns->near->box = box_of(columns, group, count);
+    return gather(columns->scene, casters, NULL, columns->near, 0) && settle_group(view, casters, columns, group, count);
 }
 
 int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                      const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column)
 {
-    gnoi_pair p;
+    struct gnoi_request *r;
+    gnoi_region region;
     gnoi_lbox boxes[6];
-    gnoi_probe probe;
-    vec3 centre;
-    int n, probed;
+    gnoi_pair p;
+    int box_count;
     columns->asked++;
     column->caster = (uint32_t)columns->caster_count;
     column->rim = (uint32_t)columns->rim_count;
@@ -367,12 +330,20 @@ int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_l
     column->rows = column->rim_rows = GNOI_NONE;
     column->known = 0;
     column->state = GNOI_COLUMN_DARK;
-    if (!gnoi_pair_make(&p, scene, view, lamp, receiver))
+    columns->scene = scene;
+    columns->lamp = lamp;
+    if (!(gnoi_lamp_side(lamp, receiver->poly->n, receiver->poly->d) * receiver->side > 0))
         return 1;
-    n = region_boxes(&p, view, &casters->single.frame, boxes, &probe, &probed, &centre);
-    if (n == 1 && probed)
-        return wait_with_others(&p, view, casters, &boxes[0], &probe, centre, columns, column);
-    return settle_apart(&p, view, casters, boxes, n, columns, column);
+    if (!gnoi_region_make(scene, view, &casters->single.frame, receiver, &region, boxes, &box_count))
+        return !gnoi_pair_make(&p, scene, view, lamp, receiver) || settle_apart(&p, view, casters, boxes, box_count, columns, column);
+    if (!gnoi_reserve(columns->context, (void **)&columns->requests, &columns->request_capacity, REQUESTS, sizeof *columns->requests) ||
+        (columns->request_count == REQUESTS && !gnoi_columns_finish(view, casters, columns)))
+        return 0;
+    r = &columns->requests[columns->request_count++];
+    r->receiver = receiver;
+    r->column = column;
+    r->box = region.box;
+    return 1;
 }
 
 void gnoi_columns_reset(gnoi_columns *columns)
@@ -390,10 +361,11 @@ void gnoi_columns_free(gnoi_columns *columns)
     gnoi_free(columns->context, columns->edges, columns->edge_capacity, sizeof *columns->edges);
     gnoi_free(columns->context, columns->found.items, columns->found.capacity, sizeof *columns->found.items);
     gnoi_free(columns->context, columns->requests, columns->request_capacity, sizeof *columns->requests);
-    gnoi_free(columns->context, columns->single_front.nodes.items, columns->single_front.nodes.capacity,
-              sizeof *columns->single_front.nodes.items);
-    gnoi_free(columns->context, columns->far_front.nodes.items, columns->far_front.nodes.capacity, sizeof *columns->far_front.nodes.items);
-    gnoi_free(columns->context, columns->rim_front.nodes.items, columns->rim_front.nodes.capacity, sizeof *columns->rim_front.nodes.items);
+    for (int i = 0; i < GNOI_NEAR_DEPTH; i++) {
+        gnoi_gathered_free(columns->context, &columns->nears[i].single);
+        gnoi_gathered_free(columns->context, &columns->nears[i].far);
+        gnoi_gathered_free(columns->context, &columns->nears[i].rim);
+    }
     gnoi_free(columns->context, columns->rims, columns->rim_capacity, sizeof *columns->rims);
     gnoi_free(columns->context, columns->steps, columns->step_capacity, sizeof *columns->steps);
     gnoi_free(columns->context, columns->rows.items, columns->rows.capacity, sizeof *columns->rows.items);

@@ -17,6 +17,7 @@
 #include "project/edge.h"
 #include "project/view.h"
 #include "shadow/contour.h"
+#include "shadow/gather.h"
 
 typedef enum gnoi_column_state {
     GNOI_COLUMN_UNKNOWN = 0,
@@ -59,7 +60,18 @@ typedef struct gnoi_column {
     double at_x, at_y;
 } gnoi_column;
 
-struct gnoi_request; /* a receiver waiting for its neighbours, so that they walk the tree together */
+struct gnoi_request; /* a receiver waiting for its neighbours, so that the tree is walked once for all of them */
+
+/* What is near a group of receivers. */
+typedef struct gnoi_near {
+    gnoi_lbox box;
+    gnoi_gathered single, far, rim;
+    int rims;                      /* rim is gathered */
+    int fine;                      /* all nodes are parted */
+    const struct gnoi_near *whole; /* of the group that it is a part of, or NULL */
+} gnoi_near;
+
+#define GNOI_NEAR_DEPTH 16
 
 /* Storage of all columns of one tile, and scratch; one for each worker. */
 typedef struct gnoi_columns {
@@ -85,9 +97,9 @@ typedef struct gnoi_columns {
     double *crossings;
     struct gnoi_request *requests;   /* request_capacity of them once made; request_count wait */
     size_t request_count, request_capacity;
-    gnoi_lbox request_box;           /* holds all that wait */
-    gnoi_tree_front single_front, far_front, rim_front;
-    int rim_gathered;                /* rim_front is that of the requests at hand */
+    const gno_scene *scene;          /* of those that wait */
+    const gnoi_lamp *lamp;
+    gnoi_near nears[GNOI_NEAR_DEPTH], *near; /* of a group and its halves; of the one at hand */
     double asked, ones, full;        /* statistics */
 } gnoi_columns;
 

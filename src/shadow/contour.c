@@ -63,9 +63,7 @@ gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, con
 {
     gno_status status;
     memset(c, 0, sizeof *c);
-    status = gnoi_tree_build_part(scene, lamp, halved, GNOI_TREE_SINGLE, &c->single);
-    if (!status && halved)
-        status = gnoi_tree_build_part(scene, lamp, halved, GNOI_TREE_FAR, &c->far);
+    status = gnoi_tree_build_casters(scene, lamp, halved, &c->single, &c->far);
     if (!status && c->far.entry_count)
         status = build_contour(scene, c);
     if (status)

@@ -502,7 +502,7 @@ static int find_candidates(const gnoi_canvas *canvas, gnoi_cover *cover, const r
         boxes[n++] = all;
     }
     for (int i = 0; i < n; i++)
-        if (!gnoi_tree_query(cover->context, tree, NULL, &boxes[i], probed ? &probe : NULL, &cover->found))
+        if (!gnoi_tree_query(cover->context, tree, &boxes[i], probed ? &probe : NULL, &cover->found))
             return 0;
     return 1;
 }

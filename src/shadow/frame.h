@@ -39,6 +39,12 @@ typedef struct gnoi_lbox {
     float u0, u1, v0, v1, z0, z1;
 } gnoi_lbox;
 
+static inline float gnoi_box_side(const gnoi_lbox *b)
+{
+    float du = b->u1 - b->u0, dv = b->v1 - b->v0;
+    return du > dv ? du : dv;
+}
+
 /* Face k of a six-face frame covers u = k GNOI_FACE_STEP - 1 .. k GNOI_FACE_STEP + 1. */
 #define GNOI_FACE_STEP 4.0
 

@@ -44,10 +44,17 @@ typedef enum gnoi_sheet_state {
     GNOI_SHEET_NO_MEMORY
 } gnoi_sheet_state;
 
-/* How the far sides lie over the region, whose box and probe on the light's plane these are. `centre` is a point
- * of the receiver's plane: within a receiver that lies whole in its region, else below the middle of the box. */
-gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
-                                vec3 centre, gnoi_columns *columns, gnoi_column *column);
+struct gnoi_region; /* region.h */
+
+/* How the far sides lie over the receiver's region on the light's plane. */
+gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const struct gnoi_region *region,
+                                const gnoi_probe *probe, gnoi_columns *columns, gnoi_column *column);
+
+/* The same where no contour edge and no far side comes near: ALL or NOWHERE, as at this point of the receiver's plane. */
+gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, gnoi_columns *columns);
+
+/* Gathers the contour edges of columns->near, unless that was done. Returns 0 when memory fails. */
+int gnoi_sheet_gather_rims(const gnoi_casters *casters, gnoi_columns *columns);
 
 /* Appends the intervals of line y that the column's contour edges bound. Returns 0 when memory fails. */
 int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,

@@ -6,7 +6,7 @@
  * Which far sides count is said by their corners' heights over the receiver's plane, in one way for all that ask: above it when
  * no corner is below by more than the tolerance, behind it when none is above.
  */
-#include "shadow/pair.h"
+#include "shadow/region.h"
 
 typedef enum place { ABOVE, BEHIND, THROUGH } place;
 
@@ -72,8 +72,7 @@ static int is_above(const gnoi_pair *p, const gnoi_poly *poly, vec3 point)
 }
 
 /* Number of far sides between the lamp and a point of the receiver, counting no further than `enough`; -1 when memory fails. */
-static int count_above(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, int enough, const gnoi_tree_front *front,
-                       gnoi_columns *columns)
+static int count_above(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, int enough, gnoi_columns *columns)
 {
     const gnoi_prepared *prep = &p->scene->prepared;
     across a = across_ray(p->lamp, point);
@@ -84,13 +83,19 @@ static int count_above(const gnoi_pair *p, const gnoi_casters *casters, vec3 poi
         return 0;
     gnoi_frame_box(&casters->far.frame, &l, 1, &box);
     columns->found.count = 0;
-    if (!gnoi_tree_query(columns->context, &casters->far, front, &box, NULL, &columns->found))
+    if (!gnoi_tree_query(columns->context, &casters->far, &box, NULL, &columns->found))
         return -1;
     for (size_t i = 0; i < columns->found.count && count < enough; i++) {
         const gnoi_poly *poly = &prep->polys[columns->found.items[i]];
         count += meets(p->scene, &a, poly) && is_above(p, poly, point);
     }
     return count;
+}
+
+gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, gnoi_columns *columns)
+{
+    int count = count_above(p, casters, point, 1, columns);
+    return count < 0 ? GNOI_SHEET_NO_MEMORY : count ? GNOI_SHEET_ALL : GNOI_SHEET_NOWHERE;
 }
 
 /* ---- contour edges over the region ---------------------------------------------------------------------------------- */
@@ -103,6 +108,27 @@ static int outside_region(const gnoi_probe *probe, const gnoi_lpoint l[2])
         if (probe->a[e] * l[0].u + probe->b[e] * l[0].v + probe->c[e] <= probe->slack[e] &&
             probe->a[e] * l[1].u + probe->b[e] * l[1].v + probe->c[e] <= probe->slack[e])
             return 1;
+    return 0;
+}
+
+/* Whether a triangle lies outside of one of the region's edges. */
+static int beside_region(const gnoi_frame *frame, const gnoi_probe *probe, const gno_scene *scene, const gnoi_poly *poly)
+{
+    vec3 q[3];
+    gnoi_lpoint l[3];
+    if (poly->corner_count != 3)
+        return 0;
+    for (uint32_t i = 0; i < 3; i++)
+        q[i] = gnoi_corner_position(scene, poly->corner + i);
+    if (!gnoi_frame_locate(frame, q, 3, l))
+        return 0;
+    for (int e = 0; e < probe->edge_count; e++) {
+        int out = 1;
+        for (int i = 0; i < 3; i++)
+            out &= probe->a[e] * l[i].u + probe->b[e] * l[i].v + probe->c[e] <= probe->slack[e];
+        if (out)
+            return 1;
+    }
     return 0;
 }
 
@@ -147,6 +173,19 @@ static int add_rim(const gnoi_pair *p, const vec3 ends[2], gnoi_columns *columns
     return 1;
 }
 
+int gnoi_sheet_gather_rims(const gnoi_casters *casters, gnoi_columns *columns)
+{
+    gnoi_near *near = columns->near;
+    const gnoi_near *whole = near->whole;
+    gnoi_grain grain = {near->fine ? -1 : gnoi_box_side(&near->box), 0};
+    if (near->rims)
+        return 1;
+    while (whole && !whole->rims)
+        whole = whole->whole;
+    near->rims = 1;
+    return gnoi_gather(columns->context, &casters->rim, whole ? &whole->rim : NULL, &near->box, grain, &near->rim);
+}
+
 static gnoi_sheet_state add_rims(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
                                  gnoi_columns *columns, gnoi_column *column)
 {
@@ -154,10 +193,8 @@ static gnoi_sheet_state add_rims(const gnoi_pair *p, const gnoi_casters *casters
     const gnoi_frame *frame = &casters->rim.frame;
     int face = gnoi_frame_face(frame, 0.5 * (double)(box->u0 + box->u1)), near_edges = 0;
     columns->found.count = 0;
-    if (!columns->rim_gathered && !gnoi_tree_gather(columns->context, &casters->rim, &columns->request_box, &columns->rim_front))
-        return GNOI_SHEET_NO_MEMORY;
-    columns->rim_gathered = 1;
-    if (!gnoi_tree_query(columns->context, &casters->rim, &columns->rim_front, box, NULL, &columns->found) ||
+    if (!gnoi_sheet_gather_rims(casters, columns) ||
+        !gnoi_gathered_query(columns->context, &columns->near->rim, box, NULL, &columns->found, NULL) ||
         !gnoi_reserve(columns->context, (void **)&columns->rims, &columns->rim_capacity, columns->rim_count + columns->found.count,
                       sizeof *columns->rims))
         return GNOI_SHEET_NO_MEMORY;
@@ -186,22 +223,19 @@ static gnoi_sheet_state add_rims(const gnoi_pair *p, const gnoi_casters *casters
 /* Looks at the far sides about as deep as the receiver: PIERCED when one passes through it, when one that stands on it may go on
  * below, or when one of its own solid lies on it, as the receiver itself where the solid is inside out; PART when any is
  * overhead. A far side of another solid that lies on the receiver counts as above: it stands on it, and hides it. */
-static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
-                                gnoi_columns *columns)
+static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_frame *frame, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_columns *columns)
 {
     const gnoi_prepared *prep = &p->scene->prepared;
     const uint32_t solid = gnoi_solid_of(prep, p->receiver->poly);
-    gnoi_probe low = *probe;
     int overhead = 0, standing = 0, hanging = 0;
-    low.qc -= 3 * probe->lift; /* what touches the plane from below is to be seen too */
     columns->found.count = 0;
-    if (!gnoi_tree_query_level(columns->context, &casters->far, &columns->far_front, box, &low, &columns->found, &overhead))
+    if (!gnoi_gathered_query(columns->context, &columns->near->far, box, NULL, &columns->found, &overhead))
         return GNOI_SHEET_NO_MEMORY;
     for (size_t i = 0; i < columns->found.count; i++) {
         const gnoi_poly *poly = &prep->polys[columns->found.items[i]];
         int touching;
         place at = place_of(p, poly, &touching);
-        if (gnoi_pair_separated(p, poly))
+        if ((at == BEHIND && !touching) || gnoi_pair_separated(p, poly) || beside_region(frame, probe, p->scene, poly))
             continue;
         if (at == THROUGH || (touching == (int)poly->corner_count && gnoi_solid_of(prep, poly) == solid))
             return GNOI_SHEET_PIERCED;
@@ -214,23 +248,19 @@ static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_casters *casters,
     return overhead ? GNOI_SHEET_PART : GNOI_SHEET_NOWHERE;
 }
 
-gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *box, const gnoi_probe *probe,
-                                vec3 centre, gnoi_columns *columns, gnoi_column *column)
+gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_region *region, const gnoi_probe *probe,
+                                gnoi_columns *columns, gnoi_column *column)
 {
-    gnoi_sheet_state state = casters->far.entry_count ? look_up(p, casters, box, probe, columns) : GNOI_SHEET_NOWHERE;
-    int count;
+    gnoi_sheet_state state = look_up(p, &casters->far.frame, &region->box, probe, columns);
     if (state != GNOI_SHEET_PART)
         return state;
-    state = add_rims(p, casters, box, probe, columns, column);
+    state = add_rims(p, casters, &region->box, probe, columns, column);
     if (state == GNOI_SHEET_PIERCED) {
         columns->rim_count = column->rim;
         column->rim_count = 0;
         column->sheet = 0;
     }
-    if (state != GNOI_SHEET_NOWHERE)
-        return state;
-    count = count_above(p, casters, centre, 1, &columns->far_front, columns);
-    return count < 0 ? GNOI_SHEET_NO_MEMORY : count ? GNOI_SHEET_ALL : GNOI_SHEET_NOWHERE;
+    return state == GNOI_SHEET_NOWHERE ? gnoi_sheet_at(p, casters, gnoi_region_centre(p, &casters->far.frame, region), columns) : state;
 }
 
 /* ---- lines ---------------------------------------------------------------------------------------------------------- */
@@ -277,41 +307,35 @@ static double widest_middle(const gnoi_step *s, size_t count, double xa, double 
     return middle;
 }
 
-/* In pixels: what passes a point no nearer passes it on a certain side. */
+/* In pixels: what passes no nearer passes on a certain side. */
 #define CLEAR 1e-4
 
-/* 1 when some contour edge of the list comes near the upright between (x,ya) and (x,yb), ya <= yb. */
-static int comes_near(const gnoi_columns *columns, const gnoi_row_list *list, double x, double ya, double yb)
-{
-    for (uint32_t i = 0; i < list->count; i++) {
-        const gnoi_rim *r = &columns->rims[gnoi_row_list_item(list, i)];
-        const gnoi_edge *e = &r->edge;
-        double from, to, x0, x1;
-        if (e->y > yb + CLEAR || e->y1 < ya - CLEAR || (double)r->x0 > x + 1 || (double)r->x1 < x - 1)
-            continue;
-        from = e->y > ya - CLEAR ? e->y : ya - CLEAR;
-        to = e->y1 < yb + CLEAR ? e->y1 : yb + CLEAR;
-        x0 = e->x + (from - e->y) * e->slope;
-        x1 = e->x + (to - e->y) * e->slope;
-        if (e->y == e->y1 || ((x0 < x + CLEAR || x1 < x + CLEAR) && (x0 > x - CLEAR || x1 > x - CLEAR)))
-            return 1;
-    }
-    return 0;
-}
+/* Contour edges that a path over several rows is held against; with more of them it is cheaper to count anew. */
+#define MANY_RIMS 32
 
-/* Whether what is known at a point of a line near by holds at the same x of line y. */
-static int still_known(const gnoi_receiver *r, const gnoi_columns *columns, const gnoi_column *column, const gnoi_row_list *list,
-                       double y, double xa, double xb)
+/* How many more far sides are over the point q of the picture than over p, as the contour edge between them has it; *sure is cleared
+ * where the edge comes too near to tell. */
+static int rim_change(const gnoi_rim *r, double px, double py, double qx, double qy, int *sure)
 {
-    double low = y < column->at_y ? y : column->at_y, high = y < column->at_y ? column->at_y : y, x = column->at_x;
-    int row = gnoi_region_row(r, y), row_then = gnoi_region_row(r, column->at_y);
-    if (!column->known || !(x >= xa && x <= xb) || row - row_then > 1 || row_then - row > 1 || comes_near(columns, list, x, low, high))
+    const gnoi_edge *e = &r->edge;
+    int level = e->y == e->y1;
+    double ax = level ? (double)r->x0 : e->x, bx = level ? (double)r->x1 : e->x + (e->y1 - e->y) * e->slope;
+    double dx = qx - px, dy = qy - py, ex = bx - ax, ey = e->y1 - e->y, along, beside, a, b, p, q;
+    if ((e->y > py + CLEAR && e->y > qy + CLEAR) || (e->y1 < py - CLEAR && e->y1 < qy - CLEAR) || (ax > px + 1 && ax > qx + 1 && bx > px + 1 && bx > qx + 1) ||
+        (ax < px - 1 && ax < qx - 1 && bx < px - 1 && bx < qx - 1))
         return 0;
-    if (row != row_then) {
-        gnoi_row_list then = gnoi_row_list_of(columns, r, column->rim_rows, column->rim, column->rim_count, row_then);
-        return !comes_near(columns, &then, x, low, high);
-    }
-    return 1;
+    beside = CLEAR * (fabs(dx) + fabs(dy));
+    a = dx * (e->y - py) - dy * (ax - px);
+    b = dx * (e->y1 - py) - dy * (bx - px);
+    if ((a > beside && b > beside) || (a < -beside && b < -beside))
+        return 0;
+    along = CLEAR * (fabs(ex) + ey);
+    p = ex * (py - e->y) - ey * (px - ax);
+    q = ex * (qy - e->y) - ey * (qx - ax);
+    if ((p > along && q > along) || (p < -along && q < -along))
+        return 0;
+    *sure &= !level && fabs(a) > beside && fabs(b) > beside && fabs(p) > along && fabs(q) > along;
+    return q < 0 ? r->step : -r->step;
 }
 
 /* The number of far sides over the point of the receiver that is seen at (x,y); -1 when memory fails. */
@@ -321,21 +345,28 @@ static int count_at(const gno_scene *scene, const gnoi_view *view, const gnoi_la
     gnoi_pair p;
     if (!gnoi_pair_make(&p, scene, view, lamp, r))
         return 0;
-    return count_above(&p, casters, gnoi_view_point(view, x, y, gnoi_plane_at(&r->nearness, x, y)), 1 << 30, NULL, columns);
+    return count_above(&p, casters, gnoi_view_point(view, x, y, gnoi_plane_at(&r->nearness, x, y)), 1 << 30, columns);
 }
 
-/* Carries what the column knows to the point (x,y), over the steps of line y; 0 when that cannot be. */
-static int carry(const gnoi_receiver *r, const gnoi_columns *columns, const gnoi_row_list *list, size_t steps, double x, double y,
-                 double xa, double xb, gnoi_column *column)
+/* Carries what the column knows at one point straight to (x,y); 0 when that cannot be. Both are in the region, which is convex. */
+static int carry(const gnoi_receiver *r, const gnoi_columns *columns, double x, double y, gnoi_column *column)
 {
-    if (!still_known(r, columns, column, list, y, xa, xb))
+    int row = gnoi_region_row(r, y), then = column->known ? gnoi_region_row(r, column->at_y) : row, sure = 1;
+    int near = row - then <= 1 && then - row <= 1;
+    gnoi_row_list list = gnoi_row_list_of(columns, r, near ? column->rim_rows : GNOI_NONE, column->rim, column->rim_count, row);
+    if (!column->known || (!near && column->rim_count > MANY_RIMS))
         return 0;
-    for (size_t i = 0; i < steps; i++) {
-        const gnoi_step *s = &columns->steps[i];
-        column->count += s->x > column->at_x && s->x <= x ? s->step : 0;
-        column->count -= s->x > x && s->x <= column->at_x ? s->step : 0;
+    for (uint32_t i = 0; i < list.count && sure; i++)
+        column->count += rim_change(&columns->rims[gnoi_row_list_item(&list, i)], column->at_x, column->at_y, x, y, &sure);
+    if (list.items && then != row) {
+        list = gnoi_row_list_of(columns, r, column->rim_rows, column->rim, column->rim_count, then);
+        for (uint32_t i = 0; i < list.count && sure; i++) {
+            const gnoi_rim *rim = &columns->rims[list.items[i]];
+            if (gnoi_region_row(r, rim->edge.y) > row || gnoi_region_row(r, rim->edge.y1) < row) /* else it was in the other row's list */
+                column->count += rim_change(rim, column->at_x, column->at_y, x, y, &sure);
+        }
     }
-    return column->count >= 0;
+    return sure && column->count >= 0;
 }
 
 int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
@@ -349,7 +380,7 @@ int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gn
         return 0;
     n = cross_rims(columns, &list, y);
     x = widest_middle(columns->steps, n, xa, xb);
-    if (!carry(receiver, columns, &list, n, x, y, xa, xb, column))
+    if (!carry(receiver, columns, x, y, column))
         column->count = count_at(scene, view, lamp, casters, receiver, x, y, columns);
     if (column->count < 0)
         return 0;

@@ -61,36 +61,47 @@ int gnoi_halved_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsign
     return (scene->prepared.solids[solid].outwards ? side > 0 : side < 0) ? -1 : 1;
 }
 
-static int is_part(gnoi_tree_part part, int side)
+static int casts(const gno_scene *scene, const gnoi_poly *poly)
 {
-    if (part == GNOI_TREE_SEEN)
-        return 1;
-    return part == GNOI_TREE_FAR ? side > 0 : part == GNOI_TREE_SINGLE ? side == 0 : side >= 0;
+    const double *t = scene->materials[poly->material].transmission;
+    return !poly->detail && (poly->opaque || !(t[0] >= 1 && t[1] >= 1 && t[2] >= 1));
 }
 
-static int collect_boxes(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree_part part,
-                         const gnoi_frame *frame, gnoi_boxes *b)
+/* Appends the boxes of prepared polygon i. */
+static int add_boxes(const gno_scene *scene, const gnoi_frame *frame, size_t i, gnoi_boxes *b)
+{
+    const gnoi_poly *poly = &scene->prepared.polys[i];
+    vec3 points[GNOI_FRAME_POINTS];
+    size_t n;
+    if (!gnoi_boxes_reserve(b, 6))
+        return 0;
+    n = (size_t)gnoi_frame_boxes(frame, points, gnoi_poly_hull(scene, poly, points), b->box + b->count);
+    for (size_t k = 0; k < n; k++)
+        b->number[b->count++] = (uint32_t)i;
+    return 1;
+}
+
+static int collect_boxes(const gno_scene *scene, gnoi_tree_part part, const gnoi_frame *frame, gnoi_boxes *b)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    for (size_t i = 0; i < prep->poly_count; i++)
+        if (((part == GNOI_TREE_SEEN || casts(scene, &prep->polys[i])) && !add_boxes(scene, frame, i, b)) || gnoi_stopped_at(scene->context, i))
+            return 0;
+    return 1;
+}
+
+/* Single casters and far sides apart. */
+static int collect_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_frame *frame,
+                           gnoi_boxes *single, gnoi_boxes *far)
 {
     const gnoi_prepared *prep = &scene->prepared;
     const size_t count = prep->poly_count + (halved ? prep->cap_count : 0);
     for (size_t i = 0; i < count; i++) {
         const gnoi_poly *poly = &prep->polys[i];
-        const double *t = scene->materials[poly->material].transmission;
-        vec3 points[GNOI_FRAME_POINTS];
-        gnoi_lbox box[6];
-        int n;
-        if ((part != GNOI_TREE_SEEN && (poly->detail || (!poly->opaque && t[0] >= 1 && t[1] >= 1 && t[2] >= 1))) ||
-            !is_part(part, gnoi_halved_side(scene, lamp, halved, poly)) ||
-            (i >= prep->poly_count && gnoi_halved_side(scene, lamp, halved, poly) == 0))
+        int side = gnoi_halved_side(scene, lamp, halved, poly);
+        if (side < 0 || !casts(scene, poly) || (i >= prep->poly_count && side == 0))
             continue;
-        n = gnoi_frame_boxes(frame, points, gnoi_poly_hull(scene, poly, points), box);
-        if (!gnoi_boxes_reserve(b, 6))
-            return 0;
-        for (int k = 0; k < n; k++) {
-            b->box[b->count] = box[k];
-            b->number[b->count++] = (uint32_t)i;
-        }
-        if (gnoi_stopped_at(scene->context, i))
+        if (!add_boxes(scene, frame, i, side > 0 ? far : single) || gnoi_stopped_at(scene->context, i))
             return 0;
     }
     return 1;
@@ -181,43 +192,6 @@ static int order_boxes(const gnoi_boxes *b, gnoi_keyed *keys)
     return 1;
 }
 
-/* ---- leaves ----------------------------------------------------------------------------------------------------- */
-
-static void leaf_clear(gnoi_tree_leaf *leaf)
-{
-    for (int i = 0; i < 3; i++)
-        for (int k = 0; k < GNOI_TREE_FAN; k++)
-            leaf->u[i][k] = leaf->v[i][k] = leaf->q[i][k] = NAN;
-}
-
-static void set_leaf(const gno_scene *scene, const gnoi_tree *tree, size_t index, gnoi_tree_leaf *leaf)
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    int placed = 0;
-    leaf_clear(leaf);
-    for (size_t k = 0; k < GNOI_TREE_FAN && index * GNOI_TREE_FAN + k < tree->entry_count; k++) {
-        const gnoi_poly *poly = &prep->polys[tree->caster[index * GNOI_TREE_FAN + k]];
-        vec3 p[3];
-        gnoi_lpoint l[3];
-        if (poly->corner_count != 3)
-            continue;
-        for (uint32_t i = 0; i < 3; i++)
-            p[i] = v3_from(prep->positions[prep->corner_vertex[poly->corner + i]]);
-        if (!gnoi_frame_locate(&tree->frame, p, 3, l))
-            continue;
-        if (!placed)
-            leaf->origin = l[0];
-        placed = 1;
-        for (int i = 0; i < 3; i++) {
-            leaf->u[i][k] = (float)(l[i].u - leaf->origin.u);
-            leaf->v[i][k] = (float)(l[i].v - leaf->origin.v);
-            leaf->q[i][k] = (float)(l[i].q - leaf->origin.q);
-        }
-    }
-    if (!placed)
-        leaf->origin.u = leaf->origin.v = leaf->origin.q = 0;
-}
-
 /* ---- packing ---------------------------------------------------------------------------------------------------- */
 
 static void plan_levels(gnoi_tree *tree)
@@ -245,8 +219,9 @@ static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, c
         tree->caster[i] = b->number[keys[i].value];
         gnoi_eight_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, &b->box[keys[i].value]);
     }
-    for (size_t i = 0; tree->leaves && i < leaf_count(tree); i++) {
-        set_leaf(scene, tree, i, &tree->leaves[i]);
+    for (size_t i = 0, n = tree->entry_count; tree->leaves && i < leaf_count(tree); i++) {
+        size_t first = i * GNOI_TREE_FAN, count = n - first < GNOI_TREE_FAN ? n - first : GNOI_TREE_FAN;
+        gnoi_leaf_set(scene, &tree->frame, tree->caster + first, count, &tree->leaves[i]);
         if (gnoi_stopped_at(context, i))
             return 0;
     }
@@ -282,19 +257,36 @@ gno_status gnoi_tree_pack(gno_context *context, const gnoi_boxes *b, const gno_s
     return good ? GNO_OK : GNO_ERROR_MEMORY;
 }
 
-gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree_part part,
-                                gnoi_tree *tree)
+gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, gnoi_tree_part part, gnoi_tree *tree)
 {
     gnoi_boxes b = {0};
     gno_status status = GNO_ERROR_MEMORY;
     memset(tree, 0, sizeof *tree);
     b.context = scene->context;
     tree->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
-    if (collect_boxes(scene, lamp, halved, part, &tree->frame, &b))
+    if (collect_boxes(scene, part, &tree->frame, &b))
         status = gnoi_tree_pack(scene->context, &b, scene, tree);
     gnoi_boxes_free(&b);
     if (status)
         gnoi_tree_free(scene->context, tree);
+    return status;
+}
+
+gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *single,
+                                   gnoi_tree *far)
+{
+    gnoi_boxes boxes[2] = {{0}, {0}};
+    gno_status status = GNO_ERROR_MEMORY;
+    memset(single, 0, sizeof *single);
+    memset(far, 0, sizeof *far);
+    boxes[0].context = boxes[1].context = scene->context;
+    single->frame = far->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
+    if (collect_casters(scene, lamp, halved, &single->frame, &boxes[0], &boxes[1]))
+        status = gnoi_tree_pack(scene->context, &boxes[0], scene, single);
+    gnoi_boxes_free(&boxes[0]);
+    if (!status)
+        status = gnoi_tree_pack(scene->context, &boxes[1], NULL, far);
+    gnoi_boxes_free(&boxes[1]);
     return status;
 }
 
@@ -312,80 +304,10 @@ void gnoi_tree_free(gno_context *context, gnoi_tree *tree)
 
 /* ---- query ------------------------------------------------------------------------------------------------------ */
 
-/* Bit k: triangle k of the leaf is not ruled out by the probe. Edges first, one comparison for all eight at a time. */
-static unsigned probe_mask(const gnoi_tree_leaf *leaf, const gnoi_probe *probe)
-{
-    int32_t out[GNOI_TREE_FAN], behind[GNOI_TREE_FAN];
-    float qa = (float)probe->qa, qb = (float)probe->qb;
-    float qc = (float)(probe->qc + probe->qa * leaf->origin.u + probe->qb * leaf->origin.v - leaf->origin.q);
-    unsigned mask = 0;
-    for (int k = 0; k < GNOI_TREE_FAN; k++) {
-        behind[k] = (leaf->q[0][k] <= qa * leaf->u[0][k] + qb * leaf->v[0][k] + qc) &
-                    (leaf->q[1][k] <= qa * leaf->u[1][k] + qb * leaf->v[1][k] + qc) &
-                    (leaf->q[2][k] <= qa * leaf->u[2][k] + qb * leaf->v[2][k] + qc);
-    }
-    for (int e = 0; e < probe->edge_count; e++) {
-        float a = (float)probe->a[e], b = (float)probe->b[e];
-        float limit = (float)(probe->slack[e] - (probe->c[e] + probe->a[e] * leaf->origin.u + probe->b[e] * leaf->origin.v));
-        for (int k = 0; k < GNOI_TREE_FAN; k++)
-            out[k] = (a * leaf->u[0][k] + b * leaf->v[0][k] <= limit) & (a * leaf->u[1][k] + b * leaf->v[1][k] <= limit) &
-                     (a * leaf->u[2][k] + b * leaf->v[2][k] <= limit);
-        for (int k = 0; k < GNOI_TREE_FAN; k++)
-            behind[k] |= out[k];
-    }
-    for (int k = 0; k < GNOI_TREE_FAN; k++)
-        mask |= (unsigned)!behind[k] << k;
-    return mask;
-}
-
 static int list_room(gno_context *context, gnoi_list *list, size_t more)
 {
     return list->count + more <= list->capacity ||
            gnoi_reserve(context, (void **)&list->items, &list->capacity, list->count + more, sizeof *list->items);
-}
-
-/* Queries that share a front start at nodes of this level: 64 entries each. */
-#define FRONT_LEVEL 1
-
-int gnoi_tree_gather(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, gnoi_tree_front *front)
-{
-    struct { int level; uint32_t node; } stack[GNOI_TREE_FAN * GNOI_TREE_LEVELS];
-    int top = 0;
-    front->nodes.count = 0;
-    front->level = tree->levels - 1 < FRONT_LEVEL ? tree->levels - 1 : FRONT_LEVEL;
-    if (tree->levels == 0)
-        return 1;
-    stack[top].level = tree->levels - 1;
-    stack[top++].node = 0;
-    while (top > 0) {
-        int level = stack[--top].level;
-        uint32_t node = stack[top].node;
-        if (level == front->level) {
-            if (!list_room(context, &front->nodes, 1))
-                return 0;
-            front->nodes.items[front->nodes.count++] = node;
-            continue;
-        }
-        for (unsigned mask = gnoi_eight_meet(&tree->nodes[tree->level_first[level] + node], box); mask; mask &= mask - 1) {
-            stack[top].level = level - 1;
-            stack[top++].node = node * GNOI_TREE_FAN + gnoi_lowest_bit(mask);
-        }
-    }
-    return 1;
-}
-
-/* Bit k: child k ends before depth z. */
-static unsigned before_mask(const gnoi_eight *node, float z)
-{
-    unsigned mask = 0;
-#if defined(__SSE2__)
-    for (int k = 0; k < GNOI_TREE_FAN; k += 4)
-        mask |= (unsigned)_mm_movemask_ps(_mm_cmplt_ps(_mm_loadu_ps(node->z1 + k), _mm_set1_ps(z))) << k;
-#else
-    for (int k = 0; k < GNOI_TREE_FAN; k++)
-        mask |= (unsigned)(node->z1[k] < z) << k;
-#endif
-    return mask;
 }
 
 /* One query: what is looked for, and where what is found goes. */
@@ -395,23 +317,16 @@ typedef struct query {
     const gnoi_lbox *box;
     const gnoi_probe *probe;
     gnoi_list *found;
-    int *before; /* NULL: casters that end before the box are listed like others */
 } query;
 
 static int query_node(const query *q, int level, uint32_t node)
 {
-    const gnoi_eight *n = &q->tree->nodes[q->tree->level_first[level] + node];
-    unsigned mask = gnoi_eight_meet(n, q->box);
+    unsigned mask = gnoi_eight_meet(&q->tree->nodes[q->tree->level_first[level] + node], q->box);
     if (level == 0 && mask) {
-        if (q->probe)
-            mask &= probe_mask(&q->tree->leaves[node], q->probe);
+        if (q->probe && q->tree->leaves)
+            mask &= gnoi_leaf_mask(&q->tree->leaves[node], q->probe);
         if (!list_room(q->context, q->found, GNOI_TREE_FAN))
             return 0;
-    }
-    if (q->before) {
-        unsigned before = mask & before_mask(n, q->box->z0);
-        *q->before |= before != 0;
-        mask &= ~before;
     }
     for (; mask; mask &= mask - 1) {
         uint32_t child = node * GNOI_TREE_FAN + gnoi_lowest_bit(mask);
@@ -423,26 +338,8 @@ static int query_node(const query *q, int level, uint32_t node)
     return 1;
 }
 
-static int run_query(const query *q, const gnoi_tree_front *front)
+int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_list *found)
 {
-    if (!front)
-        return q->tree->levels == 0 || query_node(q, q->tree->levels - 1, 0);
-    for (size_t i = 0; i < front->nodes.count; i++)
-        if (!query_node(q, front->level, front->nodes.items[i]))
-            return 0;
-    return 1;
-}
-
-int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
-                    const gnoi_probe *probe, gnoi_list *found)
-{
-    query q = {context, tree, box, probe, found, NULL};
-    return run_query(&q, front);
-}
-
-int gnoi_tree_query_level(gno_context *context, const gnoi_tree *tree, const gnoi_tree_front *front, const gnoi_lbox *box,
-                          const gnoi_probe *probe, gnoi_list *found, int *before)
-{
-    query q = {context, tree, box, probe, found, before};
-    return run_query(&q, front);
+    query q = {context, tree, box, probe, found};
+    return tree->levels == 0 || query_node(&q, tree->levels - 1, 0);
 }
