@@ -2,7 +2,7 @@
  *
  *   64 packets -> box around their receivers -> nodes of 64 casters that may stand before it (far)
  *      -> 8 packets -> those before them (near)
- *         -> packet of receivers -> packets of casters -> boxes, eight by eight -> sieve.h, eight casters at a time
+ *         -> packet of receivers -> packets of casters -> boxes, eight by eight -> pairs -> sieve.h, eight at a time
  *            -> surely / surely not / overlap.h, one by one
  *
  * Receivers that lie together share the walk down the tree, each level of it with as many as the level holds.
@@ -71,15 +71,15 @@ typedef struct target {
     uint32_t poly;
     gno_shade shade;
     gnoi_shaded shaded;
-    gnoi_sieve sieve;
 } target;
 
 /* Receivers that are searched for together. */
 typedef struct group {
     const gnoi_search *search;
+    size_t index; /* of their packet; SIZE_MAX: of none */
     vec3 origin;
-    float extent;
     gnoi_eight box; /* of those that are searched for */
+    gnoi_sieve sieve;
     target target[GNOI_PACKET];
 } group;
 
@@ -90,8 +90,7 @@ static void begin_target(group *g, unsigned k, uint32_t index)
     t->poly = index;
     t->shade = GNO_SHADE_NONE;
     gnoi_shaded_set(&t->shaded, s->from.scene, &s->from.lamp, &s->facets, &s->from.scene->prepared.polys[index]);
-    gnoi_sieve_set(&t->sieve, &t->shaded, g->origin);
-    g->extent = t->sieve.extent > g->extent ? t->sieve.extent : g->extent;
+    gnoi_sieve_add(&g->sieve, k, &t->shaded, g->origin);
 }
 
 /* mask[k]: those of `casts` whose boxes may stand before receiver k. Returns the receivers before which there are any, as bits. */
@@ -124,50 +123,61 @@ static int add_found(gno_context *context, gnoi_search_scratch *scratch, uint32_
     return 1;
 }
 
-/* The casters of a packet that shade one receiver. Returns 0 when memory fails. */
-static int search_casters(group *g, unsigned lane, const gnoi_packet *packet, const gnoi_sieve_place *place, unsigned mask,
-                          gnoi_search_scratch *scratch)
+/* One pair that is not ruled out. Returns 0 when memory fails. */
+static int try_pair(group *g, unsigned lane, const gnoi_packet *packet, unsigned k, int sure, gnoi_search_scratch *scratch)
 {
     const gno_scene *scene = g->search->from.scene;
     target *t = &g->target[lane];
-    gnoi_verdicts v = gnoi_sieve_test(&t->sieve, packet, place, mask);
-    for (mask = v.maybe; mask; mask &= mask - 1) {
-        unsigned k = gnoi_lowest_bit(mask);
-        gnoi_overlap how = GNOI_OVERLAP_PART;
-        if (packet->poly[k] == t->poly)
-            continue;
-        if (!(v.sure >> k & 1)) {
-            const gnoi_poly *caster = &scene->prepared.polys[packet->poly[k]];
-            how = gnoi_overlap_test(&t->shaded, caster);
-            if (how == GNOI_OVERLAP_NONE)
-                continue;
-            if (how == GNOI_OVERLAP_ALL && caster->opaque)
-                t->shade = GNO_SHADE_COVERED;
-        }
-        if (!add_found(scene->context, scratch, packet->source[k], lane))
+    if (packet->poly[k] == t->poly)
+        return 1;
+    if (!sure) {
+        const gnoi_poly *caster = &scene->prepared.polys[packet->poly[k]];
+        gnoi_overlap how = gnoi_overlap_test(&t->shaded, caster);
+        if (how == GNOI_OVERLAP_NONE)
+            return 1;
+        if (how == GNOI_OVERLAP_ALL && caster->opaque)
+            t->shade = GNO_SHADE_COVERED;
+    }
+    if (t->shade == GNO_SHADE_NONE)
+        t->shade = GNO_SHADE_PART;
+    return add_found(scene->context, scratch, packet->source[k], lane);
+}
+
+/* Pairs of the group and one packet of casters. Returns 0 when memory fails. */
+static int try_pairs(group *g, const gnoi_packet *packet, const gnoi_sieve_place *place, uint64_t pairs, unsigned count, gnoi_search_scratch *scratch)
+{
+    gnoi_verdicts v = gnoi_sieve_test(&g->sieve, packet, place, pairs, 0xffu >> (GNOI_EIGHT - count));
+    for (; v.maybe; v.maybe &= v.maybe - 1) {
+        unsigned n = gnoi_lowest_bit(v.maybe), pair = (unsigned)(pairs >> 8 * n) & 0xff;
+        if (!try_pair(g, pair >> 3, packet, pair & 7, v.sure >> n & 1, scratch))
             return 0;
-        if (t->shade == GNO_SHADE_NONE)
-            t->shade = GNO_SHADE_PART;
     }
     return 1;
 }
 
-/* All of the group before one packet of casters. */
+/* All of the group before one packet of casters: pairs whose boxes meet, eight by eight. */
 static int search_packet(group *g, size_t index, gnoi_search_scratch *scratch)
 {
     const gnoi_packets *packets = &g->search->packets;
     const gnoi_packet *packet = &packets->packets[index];
+    uint32_t mask[GNOI_EIGHT];
     gnoi_sieve_place place;
-    uint32_t mask[GNOI_PACKET];
-    unsigned some = meet_all(&packets->nodes[index], &g->box, packet->casts, mask);
+    uint64_t pairs = 0;
+    unsigned count = 0, some = meet_all(&packets->nodes[index], &g->box, packet->casts, mask);
     if (some)
-        gnoi_sieve_place_set(&place, packet, &g->search->from.lamp, g->origin, g->extent);
+        gnoi_sieve_place_set(&place, packet, &g->search->from.lamp, g->origin, g->sieve.extent);
     for (; some; some &= some - 1) {
-        unsigned k = gnoi_lowest_bit(some);
-        if (!search_casters(g, k, packet, &place, mask[k], scratch))
-            return 0;
+        unsigned lane = gnoi_lowest_bit(some), casters = index == g->index ? mask[lane] & ~(1u << lane) : mask[lane];
+        for (; casters; casters &= casters - 1) {
+            pairs |= (uint64_t)(lane << 3 | gnoi_lowest_bit(casters)) << 8 * count;
+            if (++count < GNOI_EIGHT)
+                continue;
+            if (!try_pairs(g, packet, &place, pairs, count, scratch))
+                return 0;
+            pairs = count = 0;
+        }
     }
-    return 1;
+    return count == 0 || try_pairs(g, packet, &place, pairs, count, scratch);
 }
 
 /* near: nodes of level 1. Returns 0 when memory fails or the call shall stop. */
@@ -239,8 +249,9 @@ static int search_receivers(const gnoi_search *search, size_t index, const gnoi_
     gno_shade shade[GNOI_PACKET];
     group g;
     g.search = search;
+    g.index = index;
     g.origin = v3_from(packet->origin);
-    g.extent = 0;
+    gnoi_sieve_clear(&g.sieve);
     scratch->found_count = 0;
     searched_boxes(&search->packets, index, &g.box);
     for (unsigned k = 0; k < GNOI_PACKET; k++)
@@ -323,8 +334,9 @@ int gnoi_search_poly(const gnoi_search *search, uint32_t index, gnoi_search_scra
         scratch->near.count = scratch->found_count = 0;
         if (own & GNOI_SEARCH) {
             g.search = search;
+            g.index = SIZE_MAX;
             g.origin = points[0];
-            g.extent = 0;
+            gnoi_sieve_clear(&g.sieve);
             gnoi_eight_clear(&g.box);
             gnoi_eight_set(&g.box, 0, &boxes[i]);
             begin_target(&g, 0, index);

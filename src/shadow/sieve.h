@@ -1,4 +1,4 @@
-/* sieve.h -- eight casters at a time against one receiver, in single precision: which surely shade it, which surely do not.
+/* sieve.h -- eight pairs of a caster and a receiver at a time, in single precision: which casters surely shade, which surely do not.
  *
  * Place in the data flow: packets that a walk has found (packet.h) -> this -> what stays open goes to overlap.h, one by one.
  * The planes of overlap.h, tested with bounds that outweigh the rounding of single precision, in the frame of the casters' packet.
@@ -13,17 +13,21 @@
 
 #define GNOI_SIEVE_PLANES (1 + GNOI_FACET_CORNERS)
 
-/* A receiver relative to an origin near it: its plane and the planes through the light and its edges (n.p + c, positive above and inside),
- * and its corners. */
+/* Up to eight receivers side by side, relative to an origin near them: the plane of each, the planes through the light and its edges (n.p + c,
+ * positive above and inside), and its corners. One with fewer corners than others has its last edge and corner several times. */
 typedef struct gnoi_sieve {
-    int corner_count; /* as many edges */
-    int convex;       /* the corners are the receiver's, not a rectangle's around it */
-    float tolerance, extent; /* extent: largest component of a corner */
-    float nx[GNOI_SIEVE_PLANES], ny[GNOI_SIEVE_PLANES], nz[GNOI_SIEVE_PLANES], c[GNOI_SIEVE_PLANES];
-    float x[GNOI_FACET_CORNERS], y[GNOI_FACET_CORNERS], z[GNOI_FACET_CORNERS];
+    int corner_count;      /* the most; as many edges */
+    unsigned char convex;  /* bit k: the corners are the receiver's, not a rectangle's around it */
+    float extent;          /* largest component of all corners */
+    float tolerance[GNOI_EIGHT];
+    float plane[GNOI_SIEVE_PLANES][4][GNOI_EIGHT]; /* nx, ny, nz, c */
+    float corner[GNOI_FACET_CORNERS][3][GNOI_EIGHT];
 } gnoi_sieve;
 
-void gnoi_sieve_set(gnoi_sieve *sieve, const gnoi_shaded *receiver, vec3 origin);
+void gnoi_sieve_clear(gnoi_sieve *sieve);
+
+/* Once for each receiver. */
+void gnoi_sieve_add(gnoi_sieve *sieve, unsigned k, const gnoi_shaded *receiver, vec3 origin);
 
 /* How receivers and light lie to a packet of casters. */
 typedef struct gnoi_sieve_place {
@@ -34,14 +38,14 @@ typedef struct gnoi_sieve_place {
     float reach;    /* bounds all coordinates of casters and receivers */
 } gnoi_sieve_place;
 
-/* extent: the greatest of the receivers'. */
 void gnoi_sieve_place_set(gnoi_sieve_place *place, const gnoi_packet *packet, const gnoi_lamp *lamp, vec3 origin, float extent);
 
 typedef struct gnoi_verdicts {
     unsigned maybe, sure; /* sure: part of maybe */
 } gnoi_verdicts;
 
-/* Only the casters of `mask` are asked about. */
-gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *receiver, const gnoi_packet *packet, const gnoi_sieve_place *place, unsigned mask);
+/* pairs: byte k is pair k, eight times the number of its receiver and that of its caster within theirs. Bits of the verdicts are pairs; only
+ * those of `mask` are asked about. */
+gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *receivers, const gnoi_packet *packet, const gnoi_sieve_place *place, uint64_t pairs, unsigned mask);
 
 #endif
