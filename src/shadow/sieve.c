@@ -105,8 +105,6 @@ typedef struct eight3 {
     eight x, y, z;
 } eight3;
 
-INLINE void load(const float *from, eight *to) { memcpy(to, from, sizeof *to); }
-
 /* to[k] = from[which[k]]. */
 INLINE void pick(const float *from, const flags *which, eight *to)
 {
@@ -115,7 +113,7 @@ INLINE void pick(const float *from, const flags *which, eight *to)
         (*to)[k] = from[(*which)[k]];
 #else
     eight all;
-    load(from, &all);
+    memcpy(&all, from, sizeof all);
     *to = __builtin_shuffle(all, *which);
 #endif
 }

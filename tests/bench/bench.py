@@ -262,6 +262,18 @@ def matrix_once(scene, threads):
         return json.load(f)
 
 
+# What the matrix is held to, from so many polygons on: the time of the peer's BVH, twice; bytes a polygon at the peak; growth a doubling.
+LARGE_MATRIX, MOST_BVH, MOST_BYTES, MOST_GROWTH = 100000, 2, 400, 2.3
+
+
+def judge_matrix(name, threads, n, of_bvh, peak, growth):
+    if n < LARGE_MATRIX:
+        return
+    for what, found, most in (("times the peer's BVH", of_bvh, MOST_BVH), ("bytes a polygon", peak, MOST_BYTES), ("times a doubling", growth, MOST_GROWTH)):
+        if found is not None and found > most:
+            missed.append(f"matrix of {name}, {threads} threads: {found:.2f} {what}, at most {most}")
+
+
 def matrix(names, threads):
     say("\n## The shadow matrix of one light\n\nSeconds to build, the scene being prepared, beside the peer's BVH of the same polygons; least / median. Bytes a polygon:"
         " the matrix alone, and the most that the process held.\n")
@@ -282,11 +294,12 @@ def matrix(names, threads):
             if bvh:
                 record(name, (0, 0), t, "embree", "bvh", bvh)
             n, one = found[0]["polygons"], found[0]
-            growth = f"{low / before[1]:.2f}" if before and 1.9 < n / before[0] < 2.1 else "-"
+            growth = low / before[1] if before and 1.9 < n / before[0] < 2.1 else None
             before = n, low
+            judge_matrix(name, t, n, low / min(bvh) if bvh else None, one["peak_memory"] / n, growth)
             say(f"| {name} | {t} | {n} | {one['counts']['ones']} | {least_median([f['seconds']['prepare'] for f in found])[0]:.3f} | {low:.3f} / {middle:.3f} | "
                 + (f"{min(bvh):.3f} / {statistics.median(bvh):.3f} | {low / min(bvh):.2f}" if bvh else "- | -")
-                + f" | {one['matrix_bytes'] / n:.0f} | {one['peak_memory'] / n:.0f} | {growth} |")
+                + f" | {one['matrix_bytes'] / n:.0f} | {one['peak_memory'] / n:.0f} | " + (f"{growth:.2f} |" if growth else "- |"))
 
 
 def small():
@@ -332,7 +345,7 @@ def main():
     if wrong:
         sys.exit(f"bench: {wrong[0]} is not one of {', '.join(known)}")
     full, quick = "full" in words, "quick" in words
-    for size in (250000, 500000):
+    for size in (125000, 250000, 500000):
         TOWNS[f"town-{size // 1000}k"] = size
     say(f"# gnomon beside its peers\n\n{run(['uname', '-srm']).strip()}, {os.cpu_count()} processors, {time.strftime('%Y-%m-%d')}, {REPEATS} repeats")
     for tool, there in (("Embree", PEER), ("POV-Ray", POVRAY)):
@@ -342,7 +355,7 @@ def main():
     if names:
         pictures(names, [FULL_HD, UHD] if full else [FULL_HD], [1, 2] if full or quick else [1], (ALIKE + ADAPTIVE) if not quick else ["1", "4", "16", "1:.05@64"], not quick)
     if full or quick or "matrix" in words:
-        matrix(["town-10k"] if quick else ["town-250k", "town-500k", "town-1m", "dragon"], [1, 2])
+        matrix(["town-10k"] if quick else ["town-125k", "town-250k", "town-500k", "town-1m", "dragon"], [1, 2])
     if full or quick or "small" in words:
         small()
     if full or quick or "views" in words:

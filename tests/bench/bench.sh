@@ -13,7 +13,8 @@
 # Embree and POV-Ray are installed from Debian when they are missing (INSTALL=0: not); what cannot be had is skipped and said so.
 #   GNOMON  the tool (build/gnomon)     REPEATS  runs of each, alternating (3)     OUT  where files go and references are kept (build/bench)
 #   GNOMON_SHARED  the folder with data/ and peers/ (../shared)     CC  compiler (cc)
-# Times are wall-clock; the least and the median of the repeats are told. Exit status 1 when an error bound or the 15 ms are missed.
+# Times are wall-clock; the least and the median of the repeats are told. Exit status 1 when an error bound, the
+# 15 ms or what the matrix is held to are missed.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 export GNOMON=${GNOMON:-$PWD/build/gnomon} SHARED=${GNOMON_SHARED:-../shared} OUT=${OUT:-build/bench}
