@@ -99,6 +99,18 @@ static inline unsigned gnoi_eight_bits(const int32_t lane[GNOI_EIGHT])
     return bits;
 }
 
+static inline unsigned gnoi_lowest_bit_long(uint64_t mask)
+{
+#if defined(__GNUC__)
+    return (unsigned)__builtin_ctzll(mask);
+#else
+    unsigned k = 0;
+    while (!(mask >> k & 1))
+        k++;
+    return k;
+#endif
+}
+
 static inline unsigned gnoi_lowest_bit(unsigned mask)
 {
 #if defined(__GNUC__)

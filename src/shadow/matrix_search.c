@@ -73,6 +73,9 @@ typedef struct target {
     gnoi_shaded shaded;
 } target;
 
+/* The pairs of a packet's polygons with themselves. */
+#define ITSELF 0x8040201008040201u
+
 /* Receivers that are searched for together. */
 typedef struct group {
     const gnoi_search *search;
@@ -91,26 +94,6 @@ static void begin_target(group *g, unsigned k, uint32_t index)
     t->shade = GNO_SHADE_NONE;
     gnoi_shaded_set(&t->shaded, s->from.scene, &s->from.lamp, &s->facets, &s->from.scene->prepared.polys[index]);
     gnoi_sieve_add(&g->sieve, k, &t->shaded, g->origin);
-}
-
-/* mask[k]: those of `casts` whose boxes may stand before receiver k. Returns the receivers before which there are any, as bits. */
-VECTOR_CLONES static unsigned meet_all(const gnoi_eight *casters, const gnoi_eight *receivers, uint32_t casts, uint32_t mask[GNOI_PACKET])
-{
-    uint32_t hit[GNOI_PACKET] = {0};
-    int32_t some[GNOI_PACKET];
-    for (int j = 0; j < GNOI_PACKET; j++) {
-        const float u0 = casters->u0[j], u1 = casters->u1[j], v0 = casters->v0[j], v1 = casters->v1[j], z0 = casters->z0[j];
-        const uint32_t bit = casts & 1u << j;
-        for (int k = 0; k < GNOI_PACKET; k++) { /* no &&, which would be branches */
-            int u = (u0 <= receivers->u1[k]) & (u1 >= receivers->u0[k]), v = (v0 <= receivers->v1[k]) & (v1 >= receivers->v0[k]);
-            hit[k] |= (u & v & (z0 <= receivers->z1[k])) ? bit : 0;
-        }
-    }
-    for (int k = 0; k < GNOI_PACKET; k++) {
-        mask[k] = hit[k];
-        some[k] = -(hit[k] != 0);
-    }
-    return gnoi_eight_bits(some);
 }
 
 static int add_found(gno_context *context, gnoi_search_scratch *scratch, uint32_t caster, unsigned lane)
@@ -149,7 +132,7 @@ static int try_pairs(group *g, const gnoi_packet *packet, const gnoi_sieve_place
     gnoi_verdicts v = gnoi_sieve_test(&g->sieve, packet, place, pairs, 0xffu >> (GNOI_EIGHT - count));
     for (; v.maybe; v.maybe &= v.maybe - 1) {
         unsigned n = gnoi_lowest_bit(v.maybe), pair = (unsigned)(pairs >> 8 * n) & 0xff;
-        if (!try_pair(g, pair >> 3, packet, pair & 7, v.sure >> n & 1, scratch))
+        if (!try_pair(g, pair & 7, packet, pair >> 3, v.sure >> n & 1, scratch))
             return 0;
     }
     return 1;
@@ -160,22 +143,22 @@ static int search_packet(group *g, size_t index, gnoi_search_scratch *scratch)
 {
     const gnoi_packets *packets = &g->search->packets;
     const gnoi_packet *packet = &packets->packets[index];
-    uint32_t mask[GNOI_EIGHT];
     gnoi_sieve_place place;
-    uint64_t pairs = 0;
-    unsigned count = 0, some = meet_all(&packets->nodes[index], &g->box, packet->casts, mask);
-    if (some)
+    uint64_t pairs = 0, meeting = gnoi_sieve_meet(&packets->nodes[index], &g->box);
+    unsigned count = 0;
+    if (index == g->index)
+        meeting &= ~ITSELF;
+    for (unsigned others = ~(unsigned)packet->casts & 0xff; others; others &= others - 1)
+        meeting &= ~((uint64_t)0xff << 8 * gnoi_lowest_bit(others));
+    if (meeting)
         gnoi_sieve_place_set(&place, packet, &g->search->from.lamp, g->origin, g->sieve.extent);
-    for (; some; some &= some - 1) {
-        unsigned lane = gnoi_lowest_bit(some), casters = index == g->index ? mask[lane] & ~(1u << lane) : mask[lane];
-        for (; casters; casters &= casters - 1) {
-            pairs |= (uint64_t)(lane << 3 | gnoi_lowest_bit(casters)) << 8 * count;
-            if (++count < GNOI_EIGHT)
-                continue;
-            if (!try_pairs(g, packet, &place, pairs, count, scratch))
-                return 0;
-            pairs = count = 0;
-        }
+    for (; meeting; meeting &= meeting - 1) {
+        pairs |= (uint64_t)gnoi_lowest_bit_long(meeting) << 8 * count;
+        if (++count < GNOI_EIGHT)
+            continue;
+        if (!try_pairs(g, packet, &place, pairs, count, scratch))
+            return 0;
+        pairs = count = 0;
     }
     return count == 0 || try_pairs(g, packet, &place, pairs, count, scratch);
 }

@@ -155,6 +155,26 @@ INLINE void size_of(const eight3 *a, eight *out)
     *out = (eight)((flags)a->x & keep) + (eight)((flags)a->y & keep) + (eight)((flags)a->z & keep);
 }
 
+/* ---- boxes -------------------------------------------------------------------------------------------------------- */
+
+VECTOR_CLONES static uint64_t meet(const gnoi_eight *casters, const gnoi_eight *receivers)
+{
+    eight u0, u1, v0, v1, z1;
+    uint64_t bits = 0;
+    memcpy(&u0, receivers->u0, sizeof u0);
+    memcpy(&u1, receivers->u1, sizeof u1);
+    memcpy(&v0, receivers->v0, sizeof v0);
+    memcpy(&v1, receivers->v1, sizeof v1);
+    memcpy(&z1, receivers->z1, sizeof z1);
+    for (int k = 0; k < GNOI_EIGHT; k++) {
+        flags f = (u1 >= casters->u0[k]) & (u0 <= casters->u1[k]) & (v1 >= casters->v0[k]) & (v0 <= casters->v1[k]) & (z1 >= casters->z0[k]);
+        bits |= (uint64_t)bits_of(&f) << 8 * k;
+    }
+    return bits;
+}
+
+uint64_t gnoi_sieve_meet(const gnoi_eight *casters, const gnoi_eight *receivers) { return meet(casters, receivers); }
+
 /* Eight pairs. */
 typedef struct pairs {
     const gnoi_sieve *sieve;
@@ -334,8 +354,8 @@ INLINE gnoi_verdicts test_all(const gnoi_sieve *r, const gnoi_packet *packet, co
         byte[k] = (unsigned char)(pair_bytes >> (8 * k));
 #endif
     number = __builtin_convertvector(byte, flags);
-    caster = number & 7;
-    p.receiver = number >> 3;
+    caster = number >> 3;
+    p.receiver = number & 7;
     p.sieve = r;
     p.at = at;
     p.extent = packet->extent;
@@ -377,7 +397,19 @@ gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *r, const gnoi_packet *p, const g
     return test(r, p, at, pair_bytes, mask);
 }
 
-#else /* nothing is ruled out, nothing settled */
+#else /* box by box; then nothing is ruled out, nothing settled */
+
+uint64_t gnoi_sieve_meet(const gnoi_eight *casters, const gnoi_eight *receivers)
+{
+    uint64_t bits = 0;
+    for (unsigned k = 0; k < GNOI_EIGHT; k++) {
+        const float u0 = casters->u0[k], u1 = casters->u1[k], v0 = casters->v0[k], v1 = casters->v1[k], z0 = casters->z0[k];
+        for (unsigned i = 0; i < GNOI_EIGHT; i++)
+            if (receivers->u1[i] >= u0 && receivers->u0[i] <= u1 && receivers->v1[i] >= v0 && receivers->v0[i] <= v1 && receivers->z1[i] >= z0)
+                bits |= (uint64_t)1 << (8 * k + i);
+    }
+    return bits;
+}
 
 gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *r, const gnoi_packet *p, const gnoi_sieve_place *at, uint64_t pair_bytes, unsigned mask)
 {

@@ -40,11 +40,14 @@ typedef struct gnoi_sieve_place {
 
 void gnoi_sieve_place_set(gnoi_sieve_place *place, const gnoi_packet *packet, const gnoi_lamp *lamp, vec3 origin, float extent);
 
+/* Boxes first: bit 8 caster + receiver is set where the caster's box meets the receiver's and does not begin behind it. */
+uint64_t gnoi_sieve_meet(const gnoi_eight *casters, const gnoi_eight *receivers);
+
 typedef struct gnoi_verdicts {
     unsigned maybe, sure; /* sure: part of maybe */
 } gnoi_verdicts;
 
-/* pairs: byte k is pair k, eight times the number of its receiver and that of its caster within theirs. Bits of the verdicts are pairs; only
+/* pairs: byte k is pair k, eight times the number of its caster and that of its receiver within theirs. Bits of the verdicts are pairs; only
  * those of `mask` are asked about. */
 gnoi_verdicts gnoi_sieve_test(const gnoi_sieve *receivers, const gnoi_packet *packet, const gnoi_sieve_place *place, uint64_t pairs, unsigned mask);
 
