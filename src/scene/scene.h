@@ -63,7 +63,7 @@ typedef struct gnoi_solid {
     int closed;
     uint32_t cap; /* the prepared polygon that closes it; GNOI_NONE: none is needed */
     int outwards; /* normals point outwards on the whole (signed volume) */
-    double lower[3], upper[3];
+    float lower[3], upper[3]; /* bounds, rounded outwards */
 } gnoi_solid;
 
 typedef struct gnoi_prepared {

@@ -334,14 +334,24 @@ static gno_status cap_open(const finding *f)
     return status;
 }
 
+static float round_down(double x)
+{
+    float f = (float)x;
+    return (double)f > x ? nextafterf(f, -HUGE_VALF) : f;
+}
+
+static float round_up(double x) { return -round_down(-x); }
+
 static void set_solids(const finding *f)
 {
     for (size_t i = 0; i < f->prep->solid_count; i++) {
         tally *t = &f->whole[i];
         gnoi_solid *s = &f->prep->solids[i];
         t->open |= t->first == GNOI_NONE; /* details alone */
-        memcpy(s->lower, t->lower, sizeof s->lower);
-        memcpy(s->upper, t->upper, sizeof s->upper);
+        for (int k = 0; k < 3; k++) {
+            s->lower[k] = round_down(t->lower[k]);
+            s->upper[k] = round_up(t->upper[k]);
+        }
         s->closed = !t->open && t->sum == 0;
         s->cap = GNOI_NONE;
         s->outwards = t->volume > 0;
