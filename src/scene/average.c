@@ -28,13 +28,14 @@ typedef struct averaging {
     gnoi_preparing *w;
     gnoi_prepared *out;
     unsigned char *marked; /* of vertices */
-    unsigned char *near;   /* of chunks: some corner is at a marked vertex */
-    uint32_t *start;       /* of vertices, and two more: their uses */
+    uint32_t low;          /* the first marked vertex */
+    size_t span;           /* vertices from there to the last */
+    unsigned char *near;   /* of chunks: some corner is at a vertex of these */
+    uint32_t *start;       /* of these vertices, and two more: their uses */
     use *uses;
-    uint32_t low, high;    /* of the marked vertices */
     double *area;          /* of polygons with a marked vertex, doubled */
-    gnoi_normals *pieces;  /* of vertices: their normals */
     size_t piece_count;
+    gnoi_normals *pieces;  /* of these vertices: their normals */
     uint32_t *base;        /* of pieces: the number of their first normal */
 } averaging;
 
@@ -59,28 +60,28 @@ static void mark_run(void *user, size_t first, size_t end)
                 a->marked[out->corner_vertex[k]] = 1;
 }
 
-static void set_range(averaging *a)
+/* There is a marked vertex. */
+static void set_span(averaging *a)
 {
     const unsigned char *first = memchr(a->marked, 1, a->out->vertex_count);
-    uint32_t last = (uint32_t)a->out->vertex_count;
-    a->low = first ? (uint32_t)(first - a->marked) : 1;
-    while (first && !a->marked[last - 1])
+    size_t last = a->out->vertex_count - 1;
+    while (!a->marked[last])
         last--;
-    a->high = first ? last - 1 : 0;
+    a->low = (uint32_t)(first - a->marked);
+    a->span = last - a->low + 1;
+    a->piece_count = (a->span + PIECE - 1) / PIECE;
 }
 
 /* Few may be marked of very many: chunks without a corner among them are passed over without looking at their polygons. */
 static gno_status look_chunk(void *user, int worker, size_t chunk)
 {
     const averaging *a = user;
-    uint32_t outside = 0;
+    const uint32_t low = a->low, most = (uint32_t)(a->span - 1);
+    uint32_t inside = 0;
     (void)worker;
-    a->near[chunk] = 0;
-    if (a->low > a->high)
-        return GNO_OK;
     for (size_t i = a->w->chunks[chunk].corner; i < a->w->chunks[chunk + 1].corner; i++)
-        outside += a->out->corner_vertex[i] - a->low > a->high - a->low;
-    a->near[chunk] = outside < a->w->chunks[chunk + 1].corner - a->w->chunks[chunk].corner;
+        inside |= a->out->corner_vertex[i] - low <= most;
+    a->near[chunk] = (unsigned char)inside;
     return GNO_OK;
 }
 
@@ -106,7 +107,7 @@ static void count_run(void *user, size_t first, size_t end)
         int any = 0;
         for (uint32_t k = poly->corner; gnoi_is_smooth(poly) && k < poly->corner + poly->corner_count; k++)
             if (a->marked[out->corner_vertex[k]]) {
-                a->start[out->corner_vertex[k] + 2]++;
+                a->start[out->corner_vertex[k] - a->low + 2]++;
                 any = 1;
             }
         if (any)
@@ -121,7 +122,7 @@ static void list_run(void *user, size_t first, size_t end)
     for (size_t i = first; a->near[first / GNOI_CHUNK] && i < end; i++)
         for (uint32_t k = out->polys[i].corner; gnoi_is_smooth(&out->polys[i]) && k < out->polys[i].corner + out->polys[i].corner_count; k++)
             if (a->marked[out->corner_vertex[k]]) {
-                use *u = &a->uses[a->start[out->corner_vertex[k] + 1]++];
+                use *u = &a->uses[a->start[out->corner_vertex[k] - a->low + 1]++];
                 u->poly = (uint32_t)i;
                 u->corner = k;
             }
@@ -130,20 +131,15 @@ static void list_run(void *user, size_t first, size_t end)
 static gno_status list_uses(averaging *a)
 {
     gno_context *context = a->w->scene->context;
-    gno_status status = gnoi_over_polygons(context, a->out, a->w->threads, mark_run, a);
-    set_range(a);
-    if (status == GNO_OK)
-        status = gnoi_parallel(context, a->w->threads, a->w->chunk_count, "prepare", look_chunk, a);
+    gno_status status = gnoi_parallel(context, a->w->threads, a->w->chunk_count, "prepare", look_chunk, a);
     if (status == GNO_OK)
         status = gnoi_over_polygons(context, a->out, a->w->threads, count_run, a);
     if (status != GNO_OK)
         return status;
-    for (size_t v = 2; v < a->out->vertex_count + 2; v++)
+    for (size_t v = 2; v < a->span + 2; v++)
         a->start[v] += a->start[v - 1];
-    a->uses = gnoi_malloc(context, a->start[a->out->vertex_count + 1], sizeof *a->uses);
-    if (!a->uses)
-        return GNO_ERROR_MEMORY;
-    return gnoi_over_polygons(context, a->out, a->w->threads, list_run, a);
+    a->uses = gnoi_malloc(context, a->start[a->span + 1], sizeof *a->uses);
+    return a->uses ? gnoi_over_polygons(context, a->out, a->w->threads, list_run, a) : GNO_ERROR_MEMORY;
 }
 
 /* ---- weights -------------------------------------------------------------------------------------------------------- */
@@ -222,8 +218,9 @@ static gno_status gather(const averaging *a, const use *uses, size_t count, cons
 /* Objects are taken in the order of their first open corner; what they leave open is another's. */
 static gno_status settle_vertex(const averaging *a, uint32_t vertex, gnoi_around *around, gnoi_normals *normals)
 {
-    const use *uses = a->uses + a->start[vertex];
-    size_t count = a->start[vertex + 1] - a->start[vertex];
+    const uint32_t *start = &a->start[vertex - a->low];
+    const use *uses = a->uses + start[0];
+    const size_t count = start[1] - start[0];
     gno_status status = GNO_OK;
     for (size_t i = 0; i < count && !status; i++) {
         const gnoi_object *object;
@@ -241,14 +238,14 @@ static gno_status settle_piece(void *user, int worker, size_t piece)
 {
     const averaging *a = user;
     gno_context *context = a->w->scene->context;
-    size_t end = (piece + 1) * PIECE < a->out->vertex_count ? (piece + 1) * PIECE : a->out->vertex_count;
+    size_t end = (piece + 1) * PIECE < a->span ? (piece + 1) * PIECE : a->span;
     gnoi_normals normals = {0};
     gnoi_around around = {0};
     gno_status status = GNO_OK;
     (void)worker;
     for (size_t v = piece * PIECE; v < end && !status; v++) {
-        if (a->marked[v])
-            status = settle_vertex(a, (uint32_t)v, &around, &normals);
+        if (a->marked[a->low + v])
+            status = settle_vertex(a, a->low + (uint32_t)v, &around, &normals);
         if (gnoi_stopped_at(context, v))
             status = GNO_ERROR_CANCELLED;
     }
@@ -262,7 +259,7 @@ static gno_status settle_piece(void *user, int worker, size_t piece)
 static gno_status place_piece(void *user, int worker, size_t piece)
 {
     const averaging *a = user;
-    size_t first = piece * PIECE, end = first + PIECE < a->out->vertex_count ? first + PIECE : a->out->vertex_count;
+    size_t first = piece * PIECE, end = first + PIECE < a->span ? first + PIECE : a->span;
     const gnoi_normals *normals = &a->pieces[piece];
     (void)worker;
     if (normals->count > 0)
@@ -299,40 +296,44 @@ static gno_status place_normals(averaging *a)
 static gno_status average(averaging *a)
 {
     gno_context *context = a->w->scene->context;
-    gno_status status;
-    if (!a->marked || !a->near || !a->start || !a->area || !a->pieces || !a->base)
-        return GNO_ERROR_MEMORY;
-    status = list_uses(a);
+    gno_status status = GNO_ERROR_MEMORY;
+    a->start = gnoi_calloc(context, a->span + 2, sizeof *a->start);
+    a->area = gnoi_malloc(context, a->out->poly_count, sizeof *a->area);
+    a->pieces = gnoi_calloc(context, a->piece_count, sizeof *a->pieces);
+    a->base = gnoi_malloc(context, a->piece_count, sizeof *a->base);
+    if (a->start && a->area && a->pieces && a->base)
+        status = list_uses(a);
     if (status == GNO_OK)
         status = gnoi_parallel(context, a->w->threads, a->piece_count, "prepare", settle_piece, a);
-    return status ? status : place_normals(a);
+    if (status == GNO_OK)
+        status = place_normals(a);
+    for (size_t k = 0; a->pieces && k < a->piece_count; k++)
+        gnoi_free(context, a->pieces[k].n, a->pieces[k].capacity, sizeof *a->pieces[k].n);
+    gnoi_free(context, a->uses, a->uses ? a->start[a->span + 1] : 0, sizeof *a->uses);
+    gnoi_free(context, a->base, a->piece_count, sizeof *a->base);
+    gnoi_free(context, a->pieces, a->piece_count, sizeof *a->pieces);
+    gnoi_free(context, a->area, a->out->poly_count, sizeof *a->area);
+    gnoi_free(context, a->start, a->span + 2, sizeof *a->start);
+    return status;
 }
 
 gno_status gnoi_average_normals(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
-    const size_t vertices = w->out->vertex_count;
+    gno_status status = GNO_ERROR_MEMORY;
     averaging a;
-    gno_status status;
     memset(&a, 0, sizeof a);
     a.w = w;
     a.out = w->out;
-    a.piece_count = (vertices + PIECE - 1) / PIECE;
-    a.marked = gnoi_calloc(context, vertices, 1);
+    a.marked = gnoi_calloc(context, w->out->vertex_count, 1);
     a.near = gnoi_malloc(context, w->chunk_count, 1);
-    a.start = gnoi_calloc(context, vertices + 2, sizeof *a.start);
-    a.area = gnoi_malloc(context, w->out->poly_count, sizeof *a.area);
-    a.pieces = gnoi_calloc(context, a.piece_count, sizeof *a.pieces);
-    a.base = gnoi_malloc(context, a.piece_count, sizeof *a.base);
-    status = average(&a);
-    for (size_t k = 0; a.pieces && k < a.piece_count; k++)
-        gnoi_free(context, a.pieces[k].n, a.pieces[k].capacity, sizeof *a.pieces[k].n);
-    gnoi_free(context, a.uses, a.uses ? a.start[vertices + 1] : 0, sizeof *a.uses);
-    gnoi_free(context, a.base, a.piece_count, sizeof *a.base);
-    gnoi_free(context, a.pieces, a.piece_count, sizeof *a.pieces);
-    gnoi_free(context, a.area, w->out->poly_count, sizeof *a.area);
-    gnoi_free(context, a.start, vertices + 2, sizeof *a.start);
+    if (a.marked && a.near)
+        status = gnoi_over_polygons(context, a.out, w->threads, mark_run, &a);
+    if (status == GNO_OK) {
+        set_span(&a);
+        status = average(&a);
+    }
     gnoi_free(context, a.near, w->chunk_count, 1);
-    gnoi_free(context, a.marked, vertices, 1);
+    gnoi_free(context, a.marked, w->out->vertex_count, 1);
     return status;
 }

@@ -8,6 +8,8 @@
 #include "scene/boundary.h"
 #include "base/sort.h"
 
+#include <string.h>
+
 #define FEW 16 /* of less than this share of all polygons all edges are listed without sums */
 
 /* A directed edge of the lower vertex. */
@@ -79,23 +81,32 @@ static int list_edges(finding *f, size_t i)
     return 1;
 }
 
+/* The first taken polygon from i on; f->count: none. */
+static size_t next_taken(const finding *f, size_t i)
+{
+    const unsigned char *found;
+    if (i >= f->count || f->taken[i])
+        return i;
+    found = memchr(f->taken + i, 1, f->count - i);
+    return found ? (size_t)(found - f->taken) : f->count;
+}
+
 static int list_halves(finding *f)
 {
     size_t some = 0;
     for (size_t i = 0; i < f->count; i++)
-        some += f->taken[i] != 0;
+        some += f->taken[i];
     if (some > f->count / FEW) {
         f->sums = gnoi_calloc(f->context, f->prep->vertex_count, sizeof *f->sums);
         if (!f->sums)
             return 0;
     }
-    for (size_t i = 0; i < f->count && f->sums; i++)
-        if (f->taken[i])
-            add_edges(f, i);
+    for (size_t i = next_taken(f, 0); i < f->count && f->sums; i = next_taken(f, i + 1))
+        add_edges(f, i);
     if (gnoi_stopped(f->context))
         return 0;
-    for (size_t i = 0; i < f->count; i++)
-        if (f->taken[i] && !list_edges(f, i))
+    for (size_t i = next_taken(f, 0); i < f->count; i = next_taken(f, i + 1))
+        if (!list_edges(f, i))
             return 0;
     return !gnoi_stopped(f->context);
 }

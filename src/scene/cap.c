@@ -91,9 +91,16 @@ static void set_plane(const work *w, opening *o)
         o->good &= fabs(v3_dot(o->n, position(w, edges[i].from)) + o->d) <= flat;
 }
 
+/* The most that a part within its bounds may rise over any plane of normal n. */
+static double greatest_rise(const gnoi_solid *s, vec3 n)
+{
+    return fabs(n.x) * (s->upper[0] - s->lower[0]) + fabs(n.y) * (s->upper[1] - s->lower[1]) + fabs(n.z) * (s->upper[2] - s->lower[2]);
+}
+
 static void judge_openings(work *w)
 {
     const gnoi_prepared *prep = &w->scene->prepared;
+    int any = 0;
     for (size_t k = 0; k < prep->solid_count; k++) {
         opening *o = &w->openings[k];
         const gnoi_solid *s = &prep->solids[k];
@@ -101,9 +108,11 @@ static void judge_openings(work *w)
         o->good = o->count > 0 && is_loop(w, o);
         if (o->good)
             set_plane(w, o);
+        o->good = o->good && greatest_rise(s, o->n) > CAP_RISE * o->size;
+        any |= o->good;
     }
     /* Inside out, the normal found is towards the part: then heights have the other sign, and the part is on no one side. */
-    for (uint32_t v = 0; v < prep->vertex_count; v++) {
+    for (uint32_t v = 0; any && v < prep->vertex_count; v++) {
         opening *o = &w->openings[prep->vertex_solid[v]];
         double h = o->good ? v3_dot(o->n, position(w, v)) + o->d : 0;
         o->good &= h <= CAP_FLAT * o->size;

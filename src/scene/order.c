@@ -20,7 +20,7 @@ typedef struct ordering {
     double extent;     /* the longest side of the scene's bounds */
     uint32_t *place;   /* Morton number of each scene vertex; NULL: all items are equal */
     size_t *first;     /* of each piece of polygons: where its items begin */
-    gnoi_keyed *items;
+    gnoi_keyed *items, *sorted;
 } ordering;
 
 static uint32_t spread(uint32_t x)
@@ -133,28 +133,36 @@ static gno_status fill_places(ordering *o)
     return gnoi_parallel(context, o->w->threads, (vertices + PIECE - 1) / PIECE, "prepare", place_piece, o);
 }
 
+static gno_status keep_piece(void *user, int worker, size_t piece)
+{
+    const ordering *o = user;
+    size_t end = (piece + 1) * PIECE < o->w->item_count ? (piece + 1) * PIECE : o->w->item_count;
+    (void)worker;
+    for (size_t i = piece * PIECE; i < end; i++)
+        o->w->order[i] = o->sorted[i].value;
+    return GNO_OK;
+}
+
 /* Lists the items, sorts them and keeps their numbers. */
 static gno_status sort_items(ordering *o, size_t pieces)
 {
     gnoi_preparing *w = o->w;
     gno_context *context = w->scene->context;
     size_t count = w->item_count;
-    gnoi_keyed *sorted = o->items;
     gno_status status = gnoi_parallel(context, w->threads, pieces, "prepare", list_piece, o);
+    o->sorted = o->items;
     if (status == GNO_OK && o->place) {
-        sorted = gnoi_sort_parallel(context, w->threads, "prepare", o->items, o->items + count, count, 3 * MORTON_BITS);
-        status = sorted ? GNO_OK : GNO_ERROR_MEMORY;
+        o->sorted = gnoi_sort_parallel(context, w->threads, "prepare", o->items, o->items + count, count, 3 * MORTON_BITS);
+        status = o->sorted ? GNO_OK : GNO_ERROR_MEMORY;
     }
-    for (size_t i = 0; i < count && status == GNO_OK; i++)
-        w->order[i] = sorted[i].value;
-    return status;
+    return status ? status : gnoi_parallel(context, w->threads, (count + PIECE - 1) / PIECE, "prepare", keep_piece, o);
 }
 
 gno_status gnoi_order_items(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
     size_t pieces = (w->scene->polygon_count + PIECE - 1) / PIECE;
-    ordering o = {w, 0, NULL, NULL, NULL};
+    ordering o = {w, 0, NULL, NULL, NULL, NULL};
     gno_status status = GNO_OK;
     o.first = gnoi_malloc(context, pieces, sizeof *o.first);
     w->item_count = o.first ? count_items(&o, pieces) : 0;

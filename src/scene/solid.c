@@ -74,15 +74,25 @@ static void join_run(void *user, size_t first, size_t end)
     }
 }
 
+static gno_status start_chunk(void *user, int worker, size_t chunk)
+{
+    const gnoi_prepared *prep = user;
+    (void)worker;
+    for (uint32_t v = prep->chunk_vertex[chunk]; v < prep->chunk_vertex[chunk + 1]; v++)
+        prep->vertex_solid[v] = v;
+    return GNO_OK;
+}
+
 /* Joins the vertices of every prepared polygon, then numbers the parts; prepared.vertex_solid serves as the forest. */
 static gno_status find_parts(const finding *f)
 {
     gnoi_prepared *prep = f->prep;
     uint32_t *parent = prep->vertex_solid, count = 0;
-    gno_status status;
-    for (uint32_t v = 0; v < prep->vertex_count; v++)
-        parent[v] = v;
-    status = gnoi_over_polygons(f->context, prep, f->w->threads, join_run, f->w);
+    gno_status status = gnoi_parallel(f->context, f->w->threads, prep->chunk_count, "prepare", start_chunk, prep);
+    if (status == GNO_OK)
+        status = gnoi_over_polygons(f->context, prep, f->w->threads, join_run, f->w);
+    if (status != GNO_OK)
+        return status;
     /* A vertex hangs from lower ones only: their part's number stands before it is asked for. */
     for (size_t k = 0; k < prep->chunk_count; k++) {
         f->first_solid[k] = count;
@@ -288,12 +298,18 @@ static gno_status add_empty(const finding *f)
 {
     const gnoi_preparing *w = f->w;
     const gno_scene *scene = w->scene;
-    for (size_t p = 0; p < scene->polygon_count && w->measures.empty > 0; p++) {
-        unsigned ring = scene->polygon_start[p], from = scene->ring_start[ring], to = scene->ring_start[ring + 1];
-        for (unsigned i = from; gnoi_kind_of(w, p) == GNOI_EMPTY && i < to; i++)
-            add_seam(f, i, i + 1 < to ? i + 1 : from, scene->polygon_start[p + 1] != ring + 1);
+    for (size_t p = 0, left = w->measures.empty; left > 0; p++) {
+        unsigned ring, from, to;
         if (gnoi_stopped_at(scene->context, p))
             return GNO_ERROR_CANCELLED;
+        if (gnoi_kind_of(w, p) != GNOI_EMPTY)
+            continue;
+        left--;
+        ring = scene->polygon_start[p];
+        from = scene->ring_start[ring];
+        to = scene->ring_start[ring + 1];
+        for (unsigned i = from; i < to; i++)
+            add_seam(f, i, i + 1 < to ? i + 1 : from, scene->polygon_start[p + 1] != ring + 1);
     }
     for (size_t t = 0; t < w->splits.count; t++)
         for (int k = 0; k < 3 && !w->splits.has_area[t]; k++)
