@@ -37,7 +37,8 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_free(context, tile->items, tile->item_capacity, sizeof *tile->items);
     gnoi_free(context, tile->slots, tile->slot_capacity, sizeof *tile->slots);
     gnoi_free(context, tile->edges, tile->edge_capacity, sizeof *tile->edges);
-    gnoi_free(context, tile->open, tile->open_capacity, sizeof *tile->open);
+    gnoi_free(context, tile->line_y, tile->line_y_capacity, sizeof *tile->line_y);
+    gnoi_free(context, tile->bar, tile->bar_capacity, sizeof *tile->bar);
     gnoi_free(context, tile->crossings, tile->crossing_capacity, sizeof *tile->crossings);
     gnoi_free(context, tile->touched, tile->touched_capacity, sizeof *tile->touched);
     gnoi_free(context, tile->columns, tile->column_capacity, sizeof *tile->columns);
@@ -60,6 +61,7 @@ void gnoi_tile_start(gnoi_tile *tile, size_t index)
     tile->y0 = ty * GNOI_TILE_H;
     tile->width = job->view.width - tile->x0 < GNOI_TILE_W ? job->view.width - tile->x0 : GNOI_TILE_W;
     tile->height = job->view.height - tile->y0 < GNOI_TILE_H ? job->view.height - tile->y0 : GNOI_TILE_H;
+    tile->rect = gnoi_tile_rect(&job->view, tx, ty);
     tile->slot_count = tile->column_count = tile->intensity_count = tile->mapping_count = 0;
     gnoi_tile_forget_texels(tile);
     gnoi_columns_reset(&tile->store);
@@ -73,6 +75,18 @@ void gnoi_tile_start(gnoi_tile *tile, size_t index)
         gnoi_tile_layers_start(tile);
 }
 
+/* The strip of the lines from `first` on, all between pixels xa and xb. */
+static void add_strip(gnoi_tile *tile, uint32_t first, int xa, int xb, int per_row)
+{
+    gnoi_strip *s = &tile->strips[tile->strip_count++];
+    s->first = first;
+    s->count = (uint32_t)tile->lines.line_count - first;
+    s->xa = (float)xa;
+    s->xb = (float)xb;
+    s->y = (float)(tile->lines.lines[first].y - tile->y0);
+    s->per_row = (float)per_row;
+}
+
 /* Lines y = (i + 1/2) / base in every row; the rows of the apron have only the one next to the tile. */
 static void add_base_lines(gnoi_tile *tile)
 {
@@ -81,6 +95,8 @@ static void add_base_lines(gnoi_tile *tile)
     for (int row = 0; row < rows; row++) {
         int apron = row == 0 || row == rows - 1;
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
+        tile->row_strip[row] = 0;
+        tile->row_strip_end[row] = 1;
         if (apron && !refine)
             continue;
         for (int i = 0; i < base; i++)
@@ -88,6 +104,9 @@ static void add_base_lines(gnoi_tile *tile)
                 gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / base, 0, tile->width * GNOI_X_ONE);
     }
     tile->row_line[rows] = (uint32_t)tile->lines.line_count;
+    tile->strip_count = 0;
+    if (!tile->lines.failed)
+        add_strip(tile, 0, 0, tile->width, base);
 }
 
 /* Whether the colour of pixel i bends from line to line by more than the def allows: where it changes evenly the lines'
@@ -130,29 +149,36 @@ static int find_runs(const gnoi_tile *tile, int row, int (*need)(const gnoi_tile
     return n;
 }
 
-/* The lines between the base lines over the row's runs. Those at one height follow each other: they meet the same shadows. */
+/* The lines between the base lines over the row's runs, run after run. */
 static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_count)
 {
     int count = tile->job->def.lines, factor = count / tile->job->def.base_lines;
-    for (int i = 0; i < count; i++)
-        for (int k = 0; k < run_count && i % factor != factor / 2; k++)
-            gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, runs[k].first * GNOI_X_ONE,
-                           (runs[k].last + 1) * GNOI_X_ONE);
-    for (int k = 0; k < run_count && !tile->fragments.alone; k++)
-        tile->refined += runs[k].last - runs[k].first + 1;
+    for (int k = 0; k < run_count && !tile->lines.failed; k++) {
+        uint32_t first = (uint32_t)tile->lines.line_count;
+        for (int i = 0; i < count; i++)
+            if (i % factor != factor / 2)
+                gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, runs[k].first * GNOI_X_ONE, (runs[k].last + 1) * GNOI_X_ONE);
+        if (!tile->lines.failed)
+            add_strip(tile, first, runs[k].first, runs[k].last + 1, 0);
+        if (!tile->fragments.alone)
+            tile->refined += runs[k].last - runs[k].first + 1;
+    }
 }
 
 /* Adds lines where they are needed; returns 0 when they are nowhere. gap: as RUN_GAP. */
 static int plan_refinement(gnoi_tile *tile, int (*need)(const gnoi_tile *tile, int i), int gap)
 {
     gnoi_lines_reset(&tile->lines);
-    tile->row_line[0] = 0;
-    for (int row = 1; row <= tile->height; row++) {
+    tile->strip_count = 0;
+    for (int row = 0; row < tile->height + 2; row++) {
         run runs[GNOI_TILE_W];
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
-        add_fine_lines(tile, row, runs, find_runs(tile, row, need, gap, runs));
+        tile->row_strip[row] = tile->strip_count;
+        if (row > 0 && row <= tile->height)
+            add_fine_lines(tile, row, runs, find_runs(tile, row, need, gap, runs));
+        tile->row_strip_end[row] = tile->strip_count;
     }
-    tile->row_line[tile->height + 1] = tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
+    tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
     return tile->lines.line_count > 0;
 }
 
@@ -180,11 +206,11 @@ static void make_rows(gnoi_tile *tile)
 
 /* Where the colour called for no more lines the layers still may; the picture, which is written already, stays as it is. A pixel
  * must not get its lines twice, so no gap between runs is closed. */
-static void make_layers(gnoi_tile *tile, const uint32_t *items, size_t count)
+static void make_layers(gnoi_tile *tile, size_t count)
 {
     tile->fragments.alone = 1;
     if (tile->job->def.lines > tile->job->def.base_lines && plan_refinement(tile, gnoi_tile_layers_need, 1)) {
-        gnoi_tile_draw(tile, items, count);
+        gnoi_tile_draw(tile, count);
         make_rows(tile);
     }
     tile->fragments.alone = 0;
@@ -195,14 +221,14 @@ static void make_layers(gnoi_tile *tile, const uint32_t *items, size_t count)
 int gnoi_tile_lay(gnoi_tile *tile, size_t index)
 {
     const gnoi_frame_job *job = tile->job;
-    const uint32_t *items = job->bins.items + job->bins.start[index];
+    const gnoi_keyed *items = job->bins.items + job->bins.start[index];
     size_t count = job->bins.start[index + 1] - job->bins.start[index];
     gnoi_tile_start(tile, index);
     gnoi_tile_sort(tile, items, count);
     if (tile->failed)
         return 0;
     add_base_lines(tile);
-    gnoi_tile_draw(tile, items, count);
+    gnoi_tile_draw(tile, count);
     if (!tile->failed)
         gnoi_tile_light(tile);
     return !tile->failed && !tile->lines.failed;
@@ -211,7 +237,7 @@ int gnoi_tile_lay(gnoi_tile *tile, size_t index)
 int gnoi_tile_render(gnoi_tile *tile, size_t index)
 {
     const gnoi_frame_job *job = tile->job;
-    const uint32_t *items = job->bins.items + job->bins.start[index];
+    const gnoi_keyed *items = job->bins.items + job->bins.start[index];
     size_t count = job->bins.start[index + 1] - job->bins.start[index];
     gnoi_tile_start(tile, index);
     gnoi_tile_sort(tile, items, count);
@@ -219,15 +245,15 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
         return 0;
     tile->judging = job->def.lines > job->def.base_lines;
     add_base_lines(tile);
-    gnoi_tile_draw(tile, items, count);
+    gnoi_tile_draw(tile, count);
     make_rows(tile);
     tile->judging = 0;
     if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile, needs_lines, RUN_GAP)) {
-        gnoi_tile_draw(tile, items, count);
+        gnoi_tile_draw(tile, count);
         make_rows(tile);
     }
     gnoi_tile_write(tile);
     if (job->layers && !tile->failed)
-        make_layers(tile, items, count);
+        make_layers(tile, count);
     return !tile->failed && !tile->lines.failed;
 }

@@ -1,7 +1,7 @@
 /* tile.h -- one tile of a scan-line picture: from polygons to pixels.
  *
  * Place in the data flow, each step a file of its own:
- *   bins -> tile_scan.c: polygons of the tile, nearest first, as segments into the visible lists of the tile's lines
+ *   bins -> tile_scan.c, tile_slot.c: polygons of the tile, nearest first, as segments into the visible lists of the tile's lines
  *        -> tile_stack.c: surfaces that let light through, over and between them (scan/stack.h)
  *        -> tile_light.c: a column of each lamp's shadow matrix for every surface seen
  *        -> tile_rows.c: visible pieces of a pixel row -> coverage by surface and pixel, split by shadow polygons
@@ -15,7 +15,7 @@
 #define GNOI_ENGINE_TILE_H
 
 #include "base/sort.h"
-#include "scan/bins.h"
+#include "scan/lanes.h"
 #include "scan/stack.h"
 #include "shade/batch.h"
 #include "shade/interp.h"
@@ -55,14 +55,24 @@ typedef struct gnoi_frame_job {
 
 #define GNOI_BASE_LINES 4 /* at most, where refinement is to judge by them */
 
+/* The farthest right that a position on a line is kept apart. */
+#define GNOI_TILE_MOST ((GNOI_TILE_W + 1.0) * GNOI_X_ONE)
+
 /* A polygon of the tile's bin: bounds in pixels from the tile's corner, greatest nearness, its slot or GNOI_NONE. */
 typedef struct gnoi_item {
     float x0, x1, y0, y1, z1;
-    uint32_t slot;
-    int plain;             /* a triangle that needs no cutting */
-    unsigned char thin;    /* nearly level and flatter than the base lines are apart: they may miss it over many pixels */
+    uint32_t slot, poly;
+    unsigned char plain;       /* a triangle that needs no cutting */
+    unsigned char thin;        /* nearly level and flatter than the base lines are apart: they may miss it over many pixels */
     unsigned char see_through; /* not opaque: drawn after all that is */
 } gnoi_item;
+
+/* Lines that begin and end together, by ascending height. */
+typedef struct gnoi_strip {
+    uint32_t first, count;
+    float xa, xb, y; /* where they begin and end, and the height of the first, in pixels from the tile's corner */
+    float per_row;   /* lines a pixel row where they are evenly spaced, else 0 */
+} gnoi_strip;
 
 /* A texture with holes is asked for on every line of a pixel; what it was is kept here, by polygon and pixel. */
 #define GNOI_TEXELS 512 /* a power of two */
@@ -119,26 +129,25 @@ typedef struct gnoi_veil {
     gnoi_tinted_lines by_line;
 } gnoi_veil;
 
-/* A line as polygons are judged by it before they are drawn: height and ends in pixels from the tile's corner; what is farther than
- * `bar` is hidden on all of it (-infinity while it has gaps). */
-typedef struct gnoi_open {
-    float y, xa, xb, bar;
-} gnoi_open;
-
 typedef struct gnoi_tile {
     const gnoi_frame_job *job;
     int x0, y0, width, height; /* pixels */
+    gnoi_rect rect;            /* the same with half a row above and below */
     int failed;                /* sticky: memory ran out, or the call is to stop */
     size_t steps;              /* a count of lines split, for asking now and then whether to stop */
     gnoi_lines lines;
     uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
     uint32_t row_mask[GNOI_TILE_ROWS];     /* bit x: some line of the row passes pixel x */
-    size_t open_capacity;
-    gnoi_open *open;                       /* beside the lines while polygons are drawn */
-    gnoi_keyed *order, *order_scratch;     /* items nearest first */
+    int strip_count, row_strip[GNOI_TILE_ROWS], row_strip_end[GNOI_TILE_ROWS]; /* strips that hold lines of each row */
+    gnoi_strip strips[GNOI_TILE_PIXELS / 2];
+    size_t line_y_capacity, bar_capacity;
+    double *line_y;                        /* beside the lines while polygons are drawn, and some zeros: their heights */
+    float *bar;                            /* beside the lines: what is farther is hidden on all of it; -infinity while it has gaps */
+    gnoi_keyed *order, *order_scratch;     /* the bin's polygons nearest first */
     size_t order_capacity, order_scratch_capacity;
-    gnoi_item *items;                      /* beside the tile's bin */
-    size_t item_capacity;
+    gnoi_item *items;                      /* beside the order */
+    size_t item_capacity, made[2];         /* those before made[0] are made, and of what is not opaque those before made[1] */
+    gnoi_lanes lanes, single;              /* triangles at hand; in lane 0, another polygon */
     size_t opaque_count;                   /* items at the head of the order that are opaque */
     gnoi_stacks stacks;
     int veiled;                            /* some piece on the lines has a tint */
@@ -210,11 +219,18 @@ int gnoi_tile_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *col
 #define GNOI_LEAK_LENGTH (2.0f / GNOI_X_ONE)
 
 /* tile_scan.c: prepares the order of the bin's polygons; draws them into the lines. */
-void gnoi_tile_sort(gnoi_tile *tile, const uint32_t *items, size_t count);
-void gnoi_tile_draw(gnoi_tile *tile, const uint32_t *items, size_t count);
+void gnoi_tile_sort(gnoi_tile *tile, const gnoi_keyed *bin, size_t count);
+void gnoi_tile_draw(gnoi_tile *tile, size_t count);
 
-/* tile_scan.c: marks the pixels along nearly level edges as having something thin; those of a box (picture coordinates) less
- * than a row high, whose edges may be exactly level and so are not kept. */
+/* tile_slot.c: makes room for slots (0 when memory fails); makes one for a polygon in a lane, of which a part was cut away or not. It is
+ * GNOI_NONE when the polygon is seen from its undrawn side or edge on. */
+int gnoi_tile_reserve_slots(gnoi_tile *tile, size_t more);
+uint32_t gnoi_tile_new_slot(gnoi_tile *tile, const gnoi_lanes *lanes, unsigned lane, uint32_t index, int cut);
+
+/* tile_thin.c: whether a polygon of this width and height in the picture is nearly level and flatter than the base lines are apart; marks
+ * the pixels along nearly level edges as having something thin; those of a box (picture coordinates) less than a row high,
+ * whose edges may be exactly level and so are not kept. */
+int gnoi_tile_is_thin(const gnoi_tile *tile, const gnoi_poly *poly, double width, double height);
 void gnoi_tile_mark_thin(gnoi_tile *tile, const gnoi_edge *edges, size_t count);
 void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, double y1);
 

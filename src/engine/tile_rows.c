@@ -247,19 +247,28 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
         gnoi_tile_uncover(tile, first, last);
 }
 
-/* Chains the row's pieces by slot; returns how many slots are seen. */
+static size_t chain_line(gnoi_tile *tile, uint32_t line, size_t count)
+{
+    for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
+        gnoi_piece *piece = &tile->lines.pieces[p];
+        gnoi_slot *slot = &tile->slots[piece->slot];
+        if (slot->chain == 0)
+            tile->touched[count++] = piece->slot;
+        piece->chain = slot->chain;
+        slot->chain = p;
+    }
+    return count;
+}
+
+/* Chains the row's pieces by slot; returns how many slots are seen. Lines at one height follow each other: they meet the same shadows. */
 static size_t chain_pieces(gnoi_tile *tile, int row)
 {
+    uint32_t first = tile->row_line[row], lines = tile->row_line[row + 1] - first;
+    uint32_t strips = (uint32_t)(tile->row_strip_end[row] - tile->row_strip[row]), each = lines / strips;
     size_t count = 0;
-    for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++)
-        for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
-            gnoi_piece *piece = &tile->lines.pieces[p];
-            gnoi_slot *slot = &tile->slots[piece->slot];
-            if (slot->chain == 0)
-                tile->touched[count++] = piece->slot;
-            piece->chain = slot->chain;
-            slot->chain = p;
-        }
+    for (uint32_t i = 0; i < each; i++)
+        for (uint32_t s = 0; s < strips; s++)
+            count = chain_line(tile, first + s * each + i, count);
     return count;
 }
 

@@ -51,25 +51,3 @@ gnoi_view gnoi_view_make(const gno_camera *camera, const gno_image_def *image, d
     view.y = form_combine(up, -view.s, view.w, 0.5 * image->height);
     return view;
 }
-
-double gnoi_view_side(const gnoi_view *view, const double n[3], double d)
-{
-    if (view->orthographic)
-        return -v3_dot(v3_from(n), view->forward);
-    return v3_dot(v3_from(n), view->eye) + d;
-}
-
-gnoi_screen_plane gnoi_view_nearness(const gnoi_view *view, const double n[3], double d, double side)
-{
-    gnoi_screen_plane p;
-    vec3 nn = v3_from(n);
-    double k = 1 / (view->s * side), centre;
-    p.fx = -v3_dot(nn, view->right) * k;
-    p.fy = v3_dot(nn, view->up) * k;
-    if (view->orthographic)
-        centre = -(v3_dot(nn, view->eye) + d) / side;
-    else
-        centre = -v3_dot(nn, view->forward) / side;
-    p.f0 = centre - 0.5 * view->width * p.fx - 0.5 * view->height * p.fy;
-    return p;
-}

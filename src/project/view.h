@@ -42,10 +42,28 @@ gnoi_view gnoi_view_make(const gno_camera *camera, const gno_image_def *image, d
 
 /* Signed distance of the eye from the plane n.P + d = 0 (perspective), or minus the cosine between n and the view direction
  * (orthographic): its sign tells which side the viewer is on, positive on n's side. */
-double gnoi_view_side(const gnoi_view *view, const double n[3], double d);
+static inline double gnoi_view_side(const gnoi_view *view, const double n[3], double d)
+{
+    if (view->orthographic)
+        return -v3_dot(v3_from(n), view->forward);
+    return v3_dot(v3_from(n), view->eye) + d;
+}
 
 /* Nearness of the plane over the picture; `side` is gnoi_view_side's, not zero. */
-gnoi_screen_plane gnoi_view_nearness(const gnoi_view *view, const double n[3], double d, double side);
+static inline gnoi_screen_plane gnoi_view_nearness(const gnoi_view *view, const double n[3], double d, double side)
+{
+    gnoi_screen_plane p;
+    vec3 nn = v3_from(n);
+    double k = 1 / (view->s * side), centre;
+    p.fx = -v3_dot(nn, view->right) * k;
+    p.fy = v3_dot(nn, view->up) * k;
+    if (view->orthographic)
+        centre = -(v3_dot(nn, view->eye) + d) / side;
+    else
+        centre = -v3_dot(nn, view->forward) / side;
+    p.f0 = centre - 0.5 * view->width * p.fx - 0.5 * view->height * p.fy;
+    return p;
+}
 
 /* The scene point seen at picture point (x,y) with nearness z (z > 0 for a perspective view). */
 static inline vec3 gnoi_view_point(const gnoi_view *view, double x, double y, double z)

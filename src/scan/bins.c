@@ -1,6 +1,7 @@
 /* bins.c -- see bins.h. Two passes over the polygons in fixed chunks: count by tile, then fill. */
 #include "scan/bins.h"
 #include "base/parallel.h"
+#include "scan/lanes.h"
 #include <string.h>
 
 #define CHUNK 8192
@@ -8,7 +9,10 @@
 
 typedef struct tile_range {
     uint16_t x0, y0, x1, y1; /* tiles, both ends included; x0 > x1: none */
+    uint32_t key;            /* for all tiles, or LARGE and the least key in any */
 } tile_range;
+
+#define LARGE 0x80000000u
 
 typedef struct job {
     const gno_scene *scene;
@@ -21,6 +25,16 @@ typedef struct job {
     gnoi_outline *outlines; /* one for each worker */
 } job;
 
+static float reach_of(const gnoi_prepared *prep, const double *p)
+{
+    double reach = 0;
+    for (int k = 0; k < 3; k++) {
+        double r = fabs(p[k] - 0.5 * (prep->lower[k] + prep->upper[k]));
+        reach = r > reach ? r : reach;
+    }
+    return (float)reach;
+}
+
 static gno_status project_chunk(void *user, int worker, size_t piece)
 {
     job *j = user;
@@ -31,6 +45,7 @@ static gno_status project_chunk(void *user, int worker, size_t piece)
         vec3 p = v3_from(j->scene->prepared.positions[i]);
         gnoi_vertex *v = &j->bins->vertices[i];
         double depth = gnoi_form_at(&view->depth, p), k = view->orthographic ? 1 : 1 / depth;
+        v->reach = reach_of(&j->scene->prepared, j->scene->prepared.positions[i]);
         if (!(depth > view->near_depth)) {
             v->x = HUGE_VAL;
             v->y = 0;
@@ -53,18 +68,74 @@ static uint16_t tile_index(double v, int size, int tiles)
     return (uint16_t)(t < 0 ? 0 : t > tiles - 1 ? tiles - 1 : t);
 }
 
-static tile_range range_of(const job *j, const gnoi_outline *o)
+/* Bounds of a polygon in the picture. */
+typedef struct bounds {
+    gnoi_rect box;
+    float nearest;
+    int cut;
+} bounds;
+
+uint32_t gnoi_nearness_key(float nearness, int opaque)
 {
-    tile_range none = {1, 1, 0, 0}, r;
-    const gnoi_bins *b = j->bins;
-    if (o->count < 3 || !(o->x1 > 0) || !(o->x0 < j->view->width) || !(o->y1 > -0.5) || !(o->y0 < j->view->height + 0.5) ||
-        !crosses_line(o->y0, o->y1, j->lines))
-        return none;
-    r.x0 = tile_index(o->x0 - 1e-3, GNOI_TILE_W, b->tiles_x);
-    r.x1 = tile_index(o->x1 + 1e-3, GNOI_TILE_W, b->tiles_x);
-    r.y0 = tile_index(o->y0 - 0.5, GNOI_TILE_H, b->tiles_y);
-    r.y1 = tile_index(o->y1 + 0.5, GNOI_TILE_H, b->tiles_y);
+    union { float f; uint32_t i; } u = {nearness};
+    uint32_t descending = u.i & 0x80000000u ? u.i : ~u.i & 0x7fffffffu;
+    return descending >> 10 | (opaque ? 0 : GNOI_KEY_SEE_THROUGH);
+}
+
+float gnoi_key_nearness(uint32_t key)
+{
+    union { float f; uint32_t i; } u;
+    u.i = (key & (GNOI_KEY_SEE_THROUGH - 1)) << 10;
+    if (!(u.i & 0x80000000u))
+        u.i = ~u.i & 0x7fffffffu;
+    return u.f == u.f ? u.f : HUGE_VALF;
+}
+
+gnoi_rect gnoi_tile_rect(const gnoi_view *view, int x, int y)
+{
+    gnoi_rect r = {x * GNOI_TILE_W, y * GNOI_TILE_H - 0.5, (x + 1) * GNOI_TILE_W, (y + 1) * GNOI_TILE_H};
+    r.x1 = r.x1 < view->width ? r.x1 : view->width;
+    r.y1 = (r.y1 < view->height ? r.y1 : view->height) + 0.5;
     return r;
+}
+
+static tile_range range_of(const job *j, const gnoi_poly *poly, const bounds *o)
+{
+    tile_range none = {1, 1, 0, 0, 0}, r;
+    const gnoi_bins *b = j->bins;
+    if (!(o->box.x1 > 0) || !(o->box.x0 < j->view->width) || !(o->box.y1 > -0.5) || !(o->box.y0 < j->view->height + 0.5) ||
+        !crosses_line(o->box.y0, o->box.y1, j->lines))
+        return none;
+    r.x0 = tile_index(o->box.x0 - 1e-3, GNOI_TILE_W, b->tiles_x);
+    r.x1 = tile_index(o->box.x1 + 1e-3, GNOI_TILE_W, b->tiles_x);
+    r.y0 = tile_index(o->box.y0 - 0.5, GNOI_TILE_H, b->tiles_y);
+    r.y1 = tile_index(o->box.y1 + 0.5, GNOI_TILE_H, b->tiles_y);
+    r.key = gnoi_nearness_key(o->cut ? HUGE_VALF : o->nearest, poly->opaque);
+    if (o->cut || gnoi_is_large(o->box.x1 - o->box.x0, o->box.y1 - o->box.y0))
+        r.key |= LARGE;
+    return r;
+}
+
+/* Bounds of polygon i, which is in `lane`; nothing where nothing of it can be seen. Returns 0 when memory fails. */
+static int bound_polygon(const job *j, const gnoi_lanes *lanes, unsigned lane, size_t i, gnoi_outline *outline, bounds *to)
+{
+    const gnoi_poly *poly = &j->scene->prepared.polys[i];
+    double reach = gnoi_outline_reach(j->view);
+    gnoi_rect box = {lanes->x0[lane], lanes->y0[lane], lanes->x1[lane], lanes->y1[lane]};
+    to->box = box;
+    to->nearest = lanes->z1[lane];
+    to->cut = 0;
+    if (poly->corner_count == 3 && box.x0 >= -reach && box.x1 <= reach && box.y0 >= -reach && box.y1 <= reach)
+        return 1;
+    if (!gnoi_outline_set(outline, j->scene, j->view, j->bins->vertices, poly))
+        return 0;
+    to->box.x0 = outline->count < 3 ? HUGE_VAL : outline->x0;
+    to->box.y0 = outline->y0;
+    to->box.x1 = outline->x1;
+    to->box.y1 = outline->y1;
+    to->nearest = outline->z1;
+    to->cut = outline->cut;
+    return 1;
 }
 
 static gno_status count_chunk(void *user, int worker, size_t piece)
@@ -73,17 +144,55 @@ static gno_status count_chunk(void *user, int worker, size_t piece)
     const gnoi_prepared *prep = &j->scene->prepared;
     size_t end = (piece + 1) * CHUNK < prep->poly_count ? (piece + 1) * CHUNK : prep->poly_count;
     uint32_t *counts = j->counts + piece * j->tile_count;
-    gnoi_outline *outline = &j->outlines[worker];
+    gnoi_lanes lanes;
     for (size_t i = piece * CHUNK; i < end; i++) {
+        unsigned lane = (unsigned)(i % GNOI_LANES);
+        bounds b;
         tile_range r;
-        if (!gnoi_outline_set(outline, j->scene, j->view, j->bins->vertices, &prep->polys[i]))
+        if (lane == 0) {
+            uint32_t index[GNOI_LANES], count = end - i < GNOI_LANES ? (uint32_t)(end - i) : GNOI_LANES;
+            for (uint32_t k = 0; k < count; k++)
+                index[k] = (uint32_t)i + k;
+            gnoi_lanes_load(&lanes, prep, j->bins, index, count);
+            gnoi_lanes_bound(&lanes);
+        }
+        if (!bound_polygon(j, &lanes, lane, i, &j->outlines[worker], &b))
             return GNO_ERROR_MEMORY;
-        r = j->ranges[i] = range_of(j, outline);
+        r = j->ranges[i] = range_of(j, &prep->polys[i], &b);
         for (int y = r.y0; y <= r.y1 && r.x0 <= r.x1; y++)
             for (int x = r.x0; x <= r.x1; x++)
                 counts[(size_t)y * (size_t)j->bins->tiles_x + (size_t)x]++;
     }
     return GNO_OK;
+}
+
+float gnoi_nearest_over(const gno_scene *scene, const gnoi_view *view, const gnoi_poly *poly, const gnoi_rect *rect)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    double side = gnoi_view_side(view, poly->n, poly->d), tolerance, high;
+    gnoi_screen_plane p;
+    float z;
+    if (side == 0)
+        return HUGE_VALF;
+    p = gnoi_view_nearness(view, poly->n, poly->d, side);
+    tolerance = gnoi_plane_tolerance(prep, (const double(*)[3])prep->positions, poly) / fabs(side);
+    high = fmax(p.fx * rect->x0, p.fx * rect->x1) + fmax(p.fy * rect->y0, p.fy * rect->y1) + p.f0;
+    high += view->orthographic ? tolerance : tolerance * fabs(high);
+    z = (float)high + 2 * GNOI_FLOAT_SLACK * fabsf((float)high);
+    return z == z ? z : HUGE_VALF;
+}
+
+/* The key of polygon i in tile (x, y). */
+static uint32_t key_in_tile(const job *j, size_t i, uint32_t key, int x, int y)
+{
+    const gnoi_poly *poly = &j->scene->prepared.polys[i];
+    gnoi_rect rect = gnoi_tile_rect(j->view, x, y);
+    uint32_t here;
+    if (!(key & LARGE))
+        return key;
+    here = gnoi_nearness_key(gnoi_nearest_over(j->scene, j->view, poly, &rect), poly->opaque);
+    key &= ~LARGE;
+    return here > key ? here : key;
 }
 
 static gno_status fill_chunk(void *user, int worker, size_t piece)
@@ -96,8 +205,11 @@ static gno_status fill_chunk(void *user, int worker, size_t piece)
     for (size_t i = piece * CHUNK; i < end; i++) {
         tile_range r = j->ranges[i];
         for (int y = r.y0; y <= r.y1 && r.x0 <= r.x1; y++)
-            for (int x = r.x0; x <= r.x1; x++)
-                j->bins->items[next[(size_t)y * (size_t)j->bins->tiles_x + (size_t)x]++] = (uint32_t)i;
+            for (int x = r.x0; x <= r.x1; x++) {
+                gnoi_keyed *item = &j->bins->items[next[(size_t)y * (size_t)j->bins->tiles_x + (size_t)x]++];
+                item->key = key_in_tile(j, i, r.key, x, y);
+                item->value = (uint32_t)i;
+            }
     }
     return GNO_OK;
 }
@@ -165,6 +277,8 @@ gno_status gnoi_bins_build(const gno_scene *scene, const gnoi_view *view, int li
     bins->tiles_x = (view->width + GNOI_TILE_W - 1) / GNOI_TILE_W;
     bins->tiles_y = (view->height + GNOI_TILE_H - 1) / GNOI_TILE_H;
     bins->vertex_count = scene->prepared.vertex_count;
+    for (int k = 0; k < 3; k++)
+        bins->middle = fmax(bins->middle, fabs(0.5 * (scene->prepared.lower[k] + scene->prepared.upper[k])));
     j.tile_count = (size_t)bins->tiles_x * (size_t)bins->tiles_y;
     j.chunk_count = (polys + CHUNK - 1) / CHUNK;
     threads = gnoi_thread_count(threads);

@@ -45,46 +45,49 @@ static uint32_t new_piece(gnoi_lines *lines)
     return (uint32_t)lines->piece_count++;
 }
 
-static inline void set_piece(gnoi_piece *piece, uint32_t line, uint32_t slot, int32_t x0, int32_t x1)
+static inline void set_slot(gnoi_piece *piece, uint32_t slot, const gnoi_depth *depth)
 {
+    piece->slot = slot;
+    piece->surely_before = depth->surely_before;
+    piece->surely_behind = depth->surely_behind;
+}
+
+/* A piece that is in no list yet, over [x0,x1). */
+static inline uint32_t make_piece(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x0, int32_t x1)
+{
+    uint32_t p = new_piece(lines);
+    gnoi_piece *piece = &lines->pieces[p];
+    if (p == 0)
+        return 0;
     piece->x0 = x0;
     piece->x1 = x1;
-    piece->slot = slot;
     piece->line = line;
     piece->chain = 0;
+    set_slot(piece, slot, &lines->depths[slot]);
+    return p;
 }
 
 uint32_t gnoi_lines_new_piece(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x0, int32_t x1)
 {
-    uint32_t p = new_piece(lines);
-    if (p == 0)
-        return 0;
-    set_piece(&lines->pieces[p], line, slot, x0, x1);
-    lines->pieces[p].next = 0;
+    uint32_t p = make_piece(lines, line, slot, x0, x1);
+    if (p)
+        lines->pieces[p].next = 0;
     return p;
 }
 
 /* Links a new piece behind `before` (0: at the line's head). Returns it, or 0 when memory fails. */
 static uint32_t link_piece(gnoi_lines *lines, uint32_t line, uint32_t before, uint32_t slot, int32_t x0, int32_t x1)
 {
-    uint32_t p = new_piece(lines);
-    gnoi_piece *piece;
+    uint32_t p = make_piece(lines, line, slot, x0, x1), *link = before ? &lines->pieces[before].next : &lines->lines[line].first;
     if (p == 0)
         return 0;
-    piece = &lines->pieces[p];
-    set_piece(piece, line, slot, x0, x1);
-    if (before) {
-        piece->next = lines->pieces[before].next;
-        lines->pieces[before].next = p;
-    } else {
-        piece->next = lines->lines[line].first;
-        lines->lines[line].first = p;
-    }
+    lines->pieces[p].next = *link;
+    *link = p;
     return p;
 }
 
 /* Adds [x0,x1) of slot behind `before`, joined to it when it is the same surface ending there. Returns the piece that ends at x1. */
-static uint32_t append_piece(gnoi_lines *lines, uint32_t line, uint32_t before, uint32_t slot, int32_t x0, int32_t x1)
+static inline uint32_t append_piece(gnoi_lines *lines, uint32_t line, uint32_t before, uint32_t slot, int32_t x0, int32_t x1)
 {
     if (before && lines->pieces[before].slot == slot && lines->pieces[before].x1 == x0) {
         lines->pieces[before].x1 = x1;
@@ -131,8 +134,7 @@ static int in_front(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t 
     return 0;
 }
 
-/* The same, by the bounds in the tile alone where they tell. */
-static int compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x0, int32_t x1, int32_t *cut, int *a_first)
+int gnoi_lines_compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x0, int32_t x1, int32_t *cut, int *a_first)
 {
     if (a->nearest < b->surely_behind)
         return -1;
@@ -141,18 +143,13 @@ static int compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x
     return in_front(a, b, y, x0, x1, cut, a_first);
 }
 
-int gnoi_lines_compare(const gnoi_depth *a, const gnoi_depth *b, double y, int32_t x0, int32_t x1, int32_t *cut, int *a_first)
-{
-    return compare(a, b, y, x0, x1, cut, a_first);
-}
-
 /* Replaces [u,v) of piece p by slot. `before` precedes p. Returns the last piece ending at or before v. No piece is taken out
  * of the line, or marks would lead astray. */
 static uint32_t replace_part(gnoi_lines *lines, uint32_t line, uint32_t before, uint32_t p, uint32_t slot, int32_t u, int32_t v)
 {
     gnoi_piece old = lines->pieces[p];
     if (u == old.x0 && v == old.x1) {
-        lines->pieces[p].slot = slot;
+        set_slot(&lines->pieces[p], slot, &lines->depths[slot]);
         return p;
     }
     if (u == old.x0) {
@@ -164,13 +161,6 @@ static uint32_t replace_part(gnoi_lines *lines, uint32_t line, uint32_t before, 
     if (p && v < old.x1)
         link_piece(lines, line, p, old.slot, v, old.x1);
     return p;
-}
-
-static int take_gap(gnoi_lines *lines, uint32_t line, uint32_t *before, uint32_t slot, int32_t x0, int32_t x1)
-{
-    *before = append_piece(lines, line, *before, slot, x0, x1);
-    lines->lines[line].uncovered -= x1 - x0;
-    return *before != 0;
 }
 
 /* The last piece that ends at or before x0, 0 when there is none. */
@@ -186,9 +176,21 @@ static uint32_t search_from(gnoi_lines *lines, gnoi_line *l, int32_t x0)
     return before;
 }
 
+/* Which of a surface and a piece is in front over [x0,x1), as gnoi_lines_compare; by their bounds in the tile alone where these tell. */
+static inline int compare(const gnoi_lines *lines, const gnoi_depth *a, const gnoi_piece *b, double y, int32_t x0, int32_t x1, int32_t *cut,
+                          int *a_first)
+{
+    if (a->nearest < b->surely_behind)
+        return -1;
+    if (a->farthest > b->surely_before)
+        return 1;
+    return in_front(a, &lines->depths[b->slot], y, x0, x1, cut, a_first);
+}
+
 int gnoi_lines_insert(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x0, int32_t x1)
 {
     gnoi_line *l = &lines->lines[line];
+    const gnoi_depth *depth = &lines->depths[slot];
     uint32_t before, p;
     int visible = 0;
     x0 = x0 < l->xa ? l->xa : x0;
@@ -198,22 +200,20 @@ int gnoi_lines_insert(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x
     before = search_from(lines, l, x0);
     p = before ? lines->pieces[before].next : l->first;
     while (x0 < x1 && !lines->failed) {
-        int32_t u, v, cut = 0;
+        int32_t v = p ? lines->pieces[p].x0 : x1, cut = 0;
         int front, new_first = 0;
-        if (!p || lines->pieces[p].x0 >= x1) {
-            visible |= take_gap(lines, line, &before, slot, x0, x1);
-            break;
+        if (v > x0) {
+            v = v < x1 ? v : x1;
+            before = append_piece(lines, line, before, slot, x0, v);
+            l->uncovered -= v - x0;
+            visible = 1;
+            x0 = v;
+            continue;
         }
-        if (lines->pieces[p].x0 > x0) {
-            u = lines->pieces[p].x0;
-            visible |= take_gap(lines, line, &before, slot, x0, u);
-            x0 = u;
-        }
-        u = x0;
         v = lines->pieces[p].x1 < x1 ? lines->pieces[p].x1 : x1;
-        front = compare(&lines->depths[slot], &lines->depths[lines->pieces[p].slot], l->y, u, v, &cut, &new_first);
+        front = compare(lines, depth, &lines->pieces[p], l->y, x0, v, &cut, &new_first);
         if (front >= 0) {
-            int32_t from = front || new_first ? u : cut, to = front || !new_first ? v : cut;
+            int32_t from = front || new_first ? x0 : cut, to = front || !new_first ? v : cut;
             before = replace_part(lines, line, before, p, slot, from, to);
             visible = 1;
         }
@@ -225,7 +225,7 @@ int gnoi_lines_insert(gnoi_lines *lines, uint32_t line, uint32_t slot, int32_t x
         }
         x0 = v;
     }
-    if (visible && lines->depths[slot].farthest < l->farthest)
-        l->farthest = lines->depths[slot].farthest;
+    if (visible && depth->farthest < l->farthest)
+        l->farthest = depth->farthest;
     return visible;
 }

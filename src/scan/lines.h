@@ -39,6 +39,7 @@ typedef struct gnoi_piece {
     uint32_t next;  /* along the line; 0 ends it */
     uint32_t chain; /* the engine's: next piece of the same slot in the row */
     uint32_t line;
+    float surely_before, surely_behind; /* the slot's */
 } gnoi_piece;
 
 typedef struct gnoi_line {
