@@ -9,6 +9,7 @@
 #   make install    PREFIX, DESTDIR     make check-tsan     threaded tests under the thread sanitizer
 #   make check-port     the engine with 32 bits and on a big-endian machine, by cross compilers and qemu
 #   make coverage   lines and branches of src/ that the tests reach
+#   make mutation   lines broken on purpose, and the test that catches each      make faults   every allocation made to fail
 #   make check-headers  the public headers in every C and C++ they promise
 
 # ---- yours to change, here or on the command line ----------------------------------------------------------------
@@ -244,6 +245,16 @@ coverage-run: all tests
 	@find $(BUILD)/obj -name '*.gcda' -exec rm -f {} +
 	@BUILD='$(BUILD)' GNOMON='$(abspath $(BUILD)/gnomon)' sh tests/run.sh $(BUILD)/logs $(TEST_BIN) $(COVERAGE_SCRIPTS); \
 	 status=$$?; sh tests/coverage.sh $(BUILD) && exit $$status
+
+# Lines of clip, scan and shadow broken on purpose, one at a time, in a copy of the tree: each has to be caught by a test. MUTATION: a
+# word of the files' names.
+.PHONY: mutation faults
+mutation:
+	@CC='$(CC)' bash tests/mutation.sh build/mutation tests/mutations.txt $(MUTATION)
+
+# Every allocation of the engine's calls made to fail, on every kind of scene; make test does a sample of it.
+faults: $(BUILD)/tests/robustness/test_faults
+	@GNOMON_FAULTS=1 $<
 
 # The programs that work on several threads, under the thread sanitizer.
 TSAN_TESTS := $(addprefix $(BUILD)/tests/,unit/test_embedding unit/test_stream unit/test_layers unit/test_threads property/test_determinism)

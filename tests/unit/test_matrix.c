@@ -282,6 +282,30 @@ static void test_source_numbers(void **state)
     gno_scene_destroy(scene);
 }
 
+/* Casters that were split into triangles stand in a column once, in order, however long it is: three ways to sort. */
+static void test_long_columns(void **state)
+{
+    static const size_t counts[3] = {9, 100, 4500};
+    (void)state;
+    for (int i = 0; i < 3; i++) {
+        gno_scene *scene = empty_scene();
+        gno_matrix_column c;
+        for (size_t k = 0; k < counts[i]; k++) {
+            double x = (double)(k % 67) - 33, y = (double)(k / 67) - 33;
+            const double bent[4][3] = {{x, y, 1}, {x + 0.9, y, 1.2}, {x + 0.9, y + 0.9, 1}, {x, y + 0.9, 1.2}};
+            assert_true(add_polygon(scene, bent, 4, 0, 0));
+        }
+        add_plate(scene, -40, -40, 40, 40, 0, 0, 0);
+        add_sun(scene, 0, 0, -1);
+        gno_matrix *m = build(scene);
+        assert_int_equal(gno_matrix_get_column(m, counts[i], &c), GNO_OK);
+        assert_int_equal(c.count, counts[i]);
+        for (size_t k = 0; k < c.count; k++) assert_int_equal(c.casters[k], k);
+        gno_matrix_destroy(m);
+        gno_scene_destroy(scene);
+    }
+}
+
 static void test_area_light(void **state)
 {
     (void)state;
@@ -471,7 +495,7 @@ int main(void)
         cmocka_unit_test(test_plate_over_floor), cmocka_unit_test(test_own_shadow),         cmocka_unit_test(test_box),
         cmocka_unit_test(test_open_box),
         cmocka_unit_test(test_lamp_in_room),     cmocka_unit_test(test_holes_and_concave),  cmocka_unit_test(test_source_numbers),
-        cmocka_unit_test(test_area_light),       cmocka_unit_test(test_nothing),            cmocka_unit_test(test_threads_and_demand),
+        cmocka_unit_test(test_area_light), cmocka_unit_test(test_long_columns),       cmocka_unit_test(test_nothing),            cmocka_unit_test(test_threads_and_demand),
         cmocka_unit_test(test_scene_that_changed), cmocka_unit_test(test_from_columns),     cmocka_unit_test(test_memory),
     };
     return cmocka_run_group_tests(tests, make_context, drop_context) != 0;

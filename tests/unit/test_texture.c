@@ -206,8 +206,8 @@ static void test_holes_for_the_eye(void **state)
     end(&b);
 }
 
-/* A lamp over the centre: its rays through the caster at height 1 land twice as far out. */
-static void check_shadow(int directional, int on_axis)
+/* A lamp 2 above the ground and (lx,ly) beside the centre, or light from there: rays through the caster at height 1. */
+static void check_shadow(int directional, int on_axis, double lx, double ly)
 {
     static const double ground[4][3] = {{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}};
     gno_material m, floor = white();
@@ -225,7 +225,11 @@ static void check_shadow(int directional, int on_axis)
     add_quad(&b, small, 1, !on_axis, &m);
     add_quad(&b, ground, 1, 0, &floor);
     light.type = directional ? GNO_LIGHT_DIRECTIONAL : GNO_LIGHT_POINT;
+    light.position[0] = lx;
+    light.position[1] = ly;
     light.position[2] = 2;
+    light.direction[0] = -lx / 2;
+    light.direction[1] = -ly / 2;
     light.direction[2] = -1;
     assert_int_equal(gno_scene_add_light(b.scene, NULL, &light, NULL), GNO_OK);
     look(&b, GNO_CAMERA_PERSPECTIVE, 0, -5, 13, 0, 0, 0, 30);
@@ -233,17 +237,21 @@ static void check_shadow(int directional, int on_axis)
     for (int y = 0; y < SIZE; y++)
         for (int x = 0; x < SIZE; x++) {
             /* The ground point of the pixel's middle; those that the caster hides, or edges cross, are passed over. */
-            double l = sqrt(194.0), t = tan(15 * PI / 180) * 2 / SIZE, d[3], k, p[2], reach = directional ? 1 : 2, lit;
+            double l = sqrt(194.0), t = tan(15 * PI / 180) * 2 / SIZE, d[3], k, p[2], q[2], reach = directional ? 1 : 2, lit;
             double sx = (x + 0.5 - SIZE / 2) * t, sy = -(y + 0.5 - SIZE / 2) * t;
             d[0] = sx, d[1] = (5 + sy * 13) / l, d[2] = (-13 + sy * 5) / l;
             k = -13 / d[2];
             p[0] = k * d[0], p[1] = -5 + k * d[1];
-            if (fabs(p[0]) > 8.5 || fabs(p[1]) > 8.5 || fabs(p[0]) < 0.3 || fabs(fabs(p[0]) - reach) < 0.4 || fabs(fabs(p[1]) - reach) < 0.6)
+            q[0] = (p[0] + (directional ? lx / 2 : lx)) / reach;
+            q[1] = (p[1] + (directional ? ly / 2 : ly)) / reach; /* of the caster's plane, on the ray to the lamp */
+            if (fabs(p[0]) > 8.5 || fabs(p[1]) > 8.5 || fabs(q[0]) < 0.3 / reach || fabs(fabs(q[0]) - 1) < 0.4 / reach ||
+                fabs(fabs(q[1]) - 1) < 0.6 / reach)
                 continue;
             double kc = -12 / d[2], cx = kc * d[0], cy = -5 + kc * d[1];
             if (fabs(cx) < 1.3 && fabs(cy) < 1.5) continue;
-            lit = fabs(p[0]) < reach && fabs(p[1]) < reach ? (p[0] < 0 ? 0 : 0.75) : 1;
-            if (!directional) lit *= 2 / sqrt(4 + p[0] * p[0] + p[1] * p[1]);
+            lit = fabs(q[0]) < 1 && fabs(q[1]) < 1 ? (q[0] < 0 ? 0 : 0.75) : 1;
+            if (directional) p[0] = p[1] = 0;
+            lit *= 2 / sqrt(4 + (p[0] - lx) * (p[0] - lx) + (p[1] - ly) * (p[1] - ly));
             near_to((double)pixel(&b, x, y)[1], lit, 2e-2);
         }
     end(&b);
@@ -252,10 +260,12 @@ static void check_shadow(int directional, int on_axis)
 static void test_holes_in_shadows(void **state)
 {
     (void)state;
-    check_shadow(1, 0);
-    check_shadow(0, 0);
-    check_shadow(1, 1);
-    check_shadow(0, 1);
+    for (int on_axis = 0; on_axis < 2; on_axis++)
+        for (int directional = 0; directional < 2; directional++) {
+            check_shadow(directional, on_axis, 0, 0);
+            check_shadow(directional, on_axis, 1.5, -0.75);
+            check_shadow(directional, on_axis, -3, 2);
+        }
 }
 
 /* ---- round maps --------------------------------------------------------------------------------------------------------------- */
