@@ -6,6 +6,8 @@
 #   make gallery    docs/gallery.md with a small picture of every scene
 #   make bench      measurements        make check-asan     tests under the address and undefined-behaviour sanitizers
 #   make fuzz       FUZZ_SECONDS for each target of random input
+#   make faults     memory, files and disks that fail, signals, counted
+#   make hostile    sizes that no one means: time, memory and outcome of each
 #   make install    PREFIX, DESTDIR     make check-tsan     threaded tests under the thread sanitizer
 #   make check-port     the engine with 32 bits and on a big-endian machine, by cross compilers and qemu
 #   make coverage   lines and branches of src/ that the tests reach
@@ -44,6 +46,7 @@ TEST_WARNINGS := -Wall -Wextra -Wpedantic -Wshadow
 VECTOR := -fno-math-errno -fno-trapping-math
 COMPILE = $(CC) $(CPPFLAGS) $(CFLAGS) $(LANGUAGE) $(SANITIZE) $(VECTOR) -fvisibility=hidden -fPIC -MMD -MP
 LINK = $(CC) $(CFLAGS) $(SANITIZE) $(filter --coverage,$(COUNTERS)) -pthread $(LDFLAGS)
+comma := ,
 soname = -Wl,-soname,$(1).so.$(SOMAJOR)
 
 # OpenEXRCore is the C part of OpenEXR; its pkg-config module would link all the C++ libraries too, so only the include
@@ -72,8 +75,18 @@ ENGINE_OBJ := $(ENGINE_SRC:%.c=$(BUILD)/obj/%.o)
 IO_OBJ     := $(IO_SRC:%.c=$(BUILD)/obj/%.o)
 CLI_OBJ    := $(CLI_SRC:%.c=$(BUILD)/obj/%.o)
 SUPPORT_OBJ := $(SUPPORT_SRC:%.c=$(BUILD)/obj/%.o)
-TEST_OBJ   := $(patsubst %.c,$(BUILD)/obj/%.o,$(TEST_SRC) $(wildcard tests/fuzz/*.c))
+TEST_OBJ   := $(patsubst %.c,$(BUILD)/obj/%.o,$(TEST_SRC) $(wildcard tests/fuzz/*.c tests/faults/*.c))
 TEST_BIN   := $(TEST_SRC:%.c=$(BUILD)/%)
+
+# Sizes that no one means: one program of its own.
+HOSTILE_SRC := $(sort $(wildcard tests/hostile/*.c))
+HOSTILE_OBJ := $(HOSTILE_SRC:%.c=$(BUILD)/obj/%.o)
+HOSTILE := $(BUILD)/tests/hostile/hostile
+
+# Faults: every public call; and the tool's own objects with the calls of memory and files that they make sent elsewhere.
+CALL_FAULTS := $(BUILD)/tests/faults/call_faults
+COMMAND_FAULTS := $(BUILD)/tests/faults/command_faults
+FAULTY := main malloc calloc realloc fopen64 open64 read write pwrite64 fsync rename close lseek64 mkstemp64 fseek fread ferror fstat64
 
 FUZZ_SRC := $(sort $(wildcard tests/fuzz/fuzz_*.c))
 FUZZ_BIN := $(FUZZ_SRC:%.c=$(BUILD)/%)
@@ -146,6 +159,18 @@ $(TEST_BIN): $(BUILD)/%: $(BUILD)/obj/%.o $(SUPPORT_OBJ) $(STATIC)
 	@mkdir -p $(@D)
 	$(call run,LINK,$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(TEST_LIBS) $(IO_LIBS) -lm)
 
+$(HOSTILE): $(HOSTILE_OBJ) $(STATIC)
+	@mkdir -p $(@D)
+	$(call run,LINK,$(LINK) $(HOSTILE_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
+
+$(CALL_FAULTS): $(BUILD)/obj/tests/faults/call_faults.o $(SUPPORT_OBJ) $(STATIC)
+	@mkdir -p $(@D)
+	$(call run,LINK,$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
+
+$(COMMAND_FAULTS): $(BUILD)/obj/tests/faults/command_faults.o $(CLI_OBJ) $(STATIC)
+	@mkdir -p $(@D)
+	$(call run,LINK,$(LINK) $(FAULTY:%=-Wl$(comma)--wrap=%) $< $(CLI_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
+
 $(FUZZ_BIN): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/obj/tests/fuzz/fuzz.o $(filter %.o,$(FUZZ_DRIVER)) $(STATIC)
 	@mkdir -p $(@D)
 	$(call run,LINK,$(LINK) $< $(BUILD)/obj/tests/fuzz/fuzz.o $(FUZZ_DRIVER) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
@@ -163,7 +188,7 @@ $(BUILD)/gnomon-io.pc: FORCE
 	 'Requires.private: yaml-0.1 assimp libpng cairo-pdf' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lgnomon-io' \
 	 'Libs.private: -lOpenEXRCore -lm' > $@
 
--include $(patsubst %.o,%.d,$(ENGINE_OBJ) $(IO_OBJ) $(CLI_OBJ) $(SUPPORT_OBJ) $(TEST_OBJ))
+-include $(patsubst %.o,%.d,$(ENGINE_OBJ) $(IO_OBJ) $(CLI_OBJ) $(SUPPORT_OBJ) $(TEST_OBJ) $(HOSTILE_OBJ))
 
 # ---- pictures --------------------------------------------------------------------------------------------------------
 demo:
@@ -194,7 +219,7 @@ test:
 	+@$(SUBMAKE) test-run
 
 .PHONY: tests
-tests: $(TEST_BIN) $(FUZZ_BIN)
+tests: $(TEST_BIN) $(FUZZ_BIN) $(HOSTILE) $(CALL_FAULTS) $(COMMAND_FAULTS)
 
 test-run: all tests
 	@CC='$(CC)' BUILD='$(BUILD)' GNOMON='$(abspath $(BUILD)/gnomon)' \
@@ -204,6 +229,20 @@ test-run: all tests
 VIEWS ?= 10000
 watertight: $(BUILD)/tests/property/test_watertight
 	@GNOMON_VIEWS=$(VIEWS) $<
+
+# Failing memory, files and disks, signals: every fault of every call and command, under the sanitizers and the leak checker.
+.PHONY: faults faults-run
+faults:
+	+@$(SUBMAKE) $(JOBS) BUILD=build/asan CFLAGS='-O1 -g -fno-omit-frame-pointer' \
+	  SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=all' faults-run
+
+faults-run: $(CALL_FAULTS) $(COMMAND_FAULTS) $(BUILD)/gnomon
+	@BUILD='$(BUILD)' bash tests/faults/faults.sh full
+
+# Huge counts, coordinates, polygons, piles, lights and pictures: time, peak memory and outcome of each. HOSTILE_CASE: a part of a name.
+.PHONY: hostile
+hostile: $(HOSTILE) $(BUILD)/gnomon
+	@$(HOSTILE) full $(if $(HOSTILE_CASE),'$(HOSTILE_CASE)')
 
 # Random input for the readers, the clipper and the engines, under the sanitizers: by libFuzzer where clang is, else by our own driver.
 FUZZ_SECONDS ?= 10

@@ -177,6 +177,9 @@ static int write_all(int descriptor, const char *data, size_t size)
         if (done < 0 && errno != EINTR) {
             return errno;
         }
+        if (done == 0) {
+            return EIO; /* a device that takes nothing and does not say why */
+        }
         if (done > 0) {
             data += done;
             size -= (size_t)done;
@@ -208,6 +211,8 @@ int gnoi_file_write_at(gnoi_file *file, const void *data, size_t size, uint64_t 
         const ssize_t done = pwrite(file->descriptor, bytes, size < (size_t)1 << 30 ? size : (size_t)1 << 30, (off_t)offset);
         if (done < 0 && errno != EINTR) {
             file->error = errno;
+        } else if (done == 0) {
+            file->error = EIO;
         } else if (done > 0) {
             bytes += done;
             offset += (uint64_t)done;

@@ -112,6 +112,16 @@ static gno_status check_limits(const adding *a)
     return status;
 }
 
+/* Before anything is read by these counts: a wrong one is found where it does no harm. */
+static gno_status check_ends(const adding *a, const char *what, const unsigned *offsets, size_t count, size_t total)
+{
+    if (offsets && (offsets[0] != 0 || offsets[count] != total)) {
+        return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %s runs from %u to %u, not from 0 to %zu", a->label, what, offsets[0],
+                         offsets[count], total);
+    }
+    return GNO_OK;
+}
+
 static gno_status check_arrays(const adding *a)
 {
     const gno_mesh_def *m = a->mesh;
@@ -136,7 +146,8 @@ static gno_status check_arrays(const adding *a)
         return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %zu corners for %zu triangles (no ring_start)", a->label,
                          m->corner_count, m->ring_count);
     }
-    return GNO_OK;
+    const gno_status status = check_ends(a, "polygon_start", m->polygon_start, m->polygon_count, m->ring_count);
+    return status == GNO_OK ? check_ends(a, "ring_start", m->ring_start, m->ring_count, m->corner_count) : status;
 }
 
 static gno_status check_options(const adding *a)
@@ -413,16 +424,11 @@ static gno_status copy_corners(const adding *a)
     return status;
 }
 
-/* Copies count+1 offsets, which begin at 0, never decrease and end at `total`; NULL: every `step` elements. out[0] stands. */
-static gno_status copy_offsets(const adding *a, const char *what, const unsigned *in, size_t count, size_t total, unsigned step,
-                               unsigned *out)
+/* Copies count+1 offsets with ends as check_ends wants them, which never decrease; NULL: every `step` elements. out[0] stands. */
+static gno_status copy_offsets(const adding *a, const char *what, const unsigned *in, size_t count, unsigned step, unsigned *out)
 {
     unsigned base = out[0];
     size_t i;
-    if (in && (in[0] != 0 || in[count] != total)) {
-        return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %s runs from %u to %u, not from 0 to %zu", a->label, what, in[0],
-                         in[count], total);
-    }
     for (i = 0; i < count; i++) {
         if (in && in[i + 1] < in[i]) {
             return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %s decreases from %u to %u at %zu", a->label, what, in[i],
@@ -453,10 +459,10 @@ static gno_status copy_polygons(const adding *a)
     gno_scene *s = a->scene;
     const gno_mesh_def *m = a->mesh;
     size_t i;
-    gno_status status = copy_offsets(a, "polygon_start", m->polygon_start, m->polygon_count, m->ring_count, 1,
+    gno_status status = copy_offsets(a, "polygon_start", m->polygon_start, m->polygon_count, 1,
                                      s->polygon_start + s->polygon_count);
     if (status == GNO_OK) {
-        status = copy_offsets(a, "ring_start", m->ring_start, m->ring_count, m->corner_count, 3, s->ring_start + s->ring_count);
+        status = copy_offsets(a, "ring_start", m->ring_start, m->ring_count, 3, s->ring_start + s->ring_count);
     }
     if (status == GNO_OK) {
         status = check_ring_counts(a);

@@ -102,12 +102,12 @@ static void fail(growing *g, gno_status status)
     g->failed = g->failed != GNO_OK ? g->failed : status;
 }
 
-static int reserve(growing *g, void **array, size_t *capacity, size_t need, size_t size)
+/* Grows the array also after an earlier failure: whoever calls takes the place it then has. */
+static void reserve(growing *g, void **array, size_t *capacity, size_t need, size_t size)
 {
     if (!gnoi_reserve(g->context, array, capacity, need, size)) {
         fail(g, GNO_ERROR_MEMORY);
     }
-    return g->failed == GNO_OK;
 }
 
 /* Returns 0, which is a vertex, when it fails: indices stay valid. */
@@ -120,15 +120,12 @@ static uint32_t add_vertex(growing *g, vec3 p, uint64_t key)
         fail(g, GNO_ERROR_LIMIT);
         return 0;
     }
-    if (reserve(g, &positions, &g->position_capacity, i + 1, sizeof *g->positions)) {
-        g->positions = positions;
-    }
-    if (reserve(g, &keys, &g->key_capacity, i + 1, sizeof *g->keys)) {
-        g->keys = keys;
-    }
-    if (reserve(g, &texcoords, &g->texcoord_capacity, i + 1, sizeof *g->texcoords)) {
-        g->texcoords = texcoords;
-    }
+    reserve(g, &positions, &g->position_capacity, i + 1, sizeof *g->positions);
+    reserve(g, &keys, &g->key_capacity, i + 1, sizeof *g->keys);
+    reserve(g, &texcoords, &g->texcoord_capacity, i + 1, sizeof *g->texcoords);
+    g->positions = positions;
+    g->keys = keys;
+    g->texcoords = texcoords;
     if (g->failed != GNO_OK) {
         return 0;
     }
@@ -229,10 +226,11 @@ static void add_triangle(growing *g, uint32_t a, uint32_t b, uint32_t c)
 {
     void *array = g->corners;
     size_t i = g->corner_count;
-    if (g->failed != GNO_OK || !reserve(g, &array, &g->corner_capacity, i + 3, sizeof *g->corners)) {
+    reserve(g, &array, &g->corner_capacity, i + 3, sizeof *g->corners);
+    g->corners = array;
+    if (g->failed != GNO_OK) {
         return;
     }
-    g->corners = array;
     g->corners[i] = (int)a;
     g->corners[i + 1] = (int)b;
     g->corners[i + 2] = (int)c;
