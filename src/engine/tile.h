@@ -184,6 +184,10 @@ typedef struct gnoi_tile {
     gnoi_mapping *mappings;
     gnoi_texel *texels;                    /* GNOI_TEXELS, once something has holes */
     float texel[4];                        /* of the pixel and surface sampled last, where it is textured */
+    gnoi_looks looks;                      /* texels asked for */
+    size_t texel_count;
+    float asked[GNOI_BATCH + 1][4];       /* of the batch's samples, valid once the looks are answered; sample i has texel_of[i], or none */
+    uint16_t texel_of[GNOI_BATCH];
     float even[3][GNOI_BATCH];             /* beside the batch, in textured pictures: factor that puts the texture's mean in the texel's place */
     float acc[3][GNOI_TILE_PIXELS];        /* sums over lines */
     float weight[GNOI_TILE_PIXELS];        /* lines that cover the pixel */
@@ -237,6 +241,7 @@ void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, doub
 /* tile_texture.c: the texture of the slot's material in a pixel of the tile (apron included), seen at (x,y), to tile->texel; and a
  * unit normal turned by its bump. */
 void gnoi_tile_set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y);
+void gnoi_tile_ask_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y);
 vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n);
 void gnoi_tile_forget_texels(gnoi_tile *tile);
 

@@ -17,9 +17,10 @@ static int is_precomputed(const gnoi_slot *slot)
 #define EVEN_FLOOR 0.02f
 #define EVEN_MOST 4.0f
 
-static float even_factor(const gnoi_tone *tone, const float *texel, int k)
+/* 1 where there is no mean. */
+static float even_factor(float mean, float texel)
 {
-    float factor = tone->textured && tone->mean[k] > 0 ? (tone->mean[k] + EVEN_FLOOR) / (texel[k] + EVEN_FLOOR) : 1;
+    float factor = mean > 0 ? (mean + EVEN_FLOOR) / (texel + EVEN_FLOOR) : 1;
     return factor < EVEN_MOST ? factor : EVEN_MOST;
 }
 
@@ -40,9 +41,33 @@ static void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], cons
     }
 }
 
+#define NO_TEXEL UINT16_MAX
+
+/* Factors of the samples' textures; tile->even holds their means until then. The last texel stays: a lamp's own part of the same pixel may
+ * come in the next batch. */
+static void apply_texels(gnoi_tile *tile)
+{
+    static const float plain[3] = {1, 1, 1};
+    gnoi_batch *b = &tile->batch;
+    gnoi_looks_answer(&tile->looks);
+    for (int i = 0; i < b->count; i++) {
+        const float *texel = tile->texel_of[i] == NO_TEXEL ? plain : tile->asked[tile->texel_of[i]];
+        for (int k = 0; k < 3; k++) {
+            tile->even[k][i] = even_factor(tile->even[k][i], texel[k]);
+            b->kd[k][i] *= texel[k];
+            b->rgb[k][i] *= texel[k];
+        }
+    }
+    if (tile->texel_count > 0)
+        memcpy(tile->asked[0], tile->asked[tile->texel_count - 1], sizeof tile->asked[0]);
+    tile->texel_count = tile->texel_count > 0;
+}
+
 void gnoi_tile_flush(gnoi_tile *tile)
 {
     gnoi_batch *b = &tile->batch;
+    if (tile->job->textured)
+        apply_texels(tile);
     gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
     for (int i = 0; i < b->count; i++) {
         float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]}, judged[3];
@@ -172,7 +197,7 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
         return;
     }
     for (int k = 0; k < 3; k++)
-        judged[k] = rgb[k] * even_factor(tone, texel, k);
+        judged[k] = rgb[k] * even_factor(tone->mean[k], texel[k]);
     add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, judged, coverage, &cells->by_line[0][column], GNOI_TILE_W);
 }
 
@@ -221,15 +246,11 @@ static void set_material(gnoi_batch *b, int i, const gnoi_tone *m, float coverag
     b->shininess[i] = m->shininess;
 }
 
-static void apply_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
+static void set_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
 {
-    gnoi_batch *b = &tile->batch;
+    tile->texel_of[i] = tone->textured ? (uint16_t)(tile->texel_count - 1) : NO_TEXEL;
     for (int k = 0; k < 3; k++)
-        tile->even[k][i] = even_factor(tone, tile->texel, k);
-    for (int k = 0; k < 3 && tone->textured; k++) {
-        b->kd[k][i] *= tile->texel[k];
-        b->rgb[k][i] *= tile->texel[k];
-    }
+        tile->even[k][i] = tone->mean[k];
 }
 
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint)
@@ -241,18 +262,20 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     double y = tile->y0 + row - 0.5 + (double)(cells->my[column] / coverage);
     const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
     int i = b->count;
-    if (tone->textured && !tint)
-        gnoi_tile_set_texel(tile, slot, row, column, x, y);
     if (is_precomputed(slot)) {
         static const float plain[3] = {1, 1, 1};
+        if (tone->textured && !tint)
+            gnoi_tile_set_texel(tile, slot, row, column, x, y);
         sample_precomputed(tile, slot, row, column, x, y, cells, tint, tone->textured ? tile->texel : plain);
         return;
     }
+    if (tone->textured && !tint)
+        gnoi_tile_ask_texel(tile, slot, row, column, x, y);
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
     set_normal(tile, i, slot, row, column, x, y);
     set_material(b, i, tone, coverage, tint);
     if (job->textured)
-        apply_texel(tile, i, tone);
+        set_texel(tile, i, tone);
     if (tile->tinted)
         gnoi_tile_tint_sample(tile, i, column, cells, tint != NULL);
     b->coverage[i] = coverage;

@@ -64,6 +64,22 @@ void gnoi_tile_set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, 
     }
 }
 
+void gnoi_tile_ask_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y)
+{
+    uint32_t material = slot->receiver.poly->material;
+    const gno_texture *texture = &tile->job->scene->materials[material].texture;
+    float *texel = tile->asked[tile->texel_count++];
+    if (texture->kind == GNO_TEXTURE_IMAGE && !tile->job->tones[material].has_holes) {
+        gnoi_sight sight = sight_of(tile, slot);
+        gnoi_mapping *mappings = seek_mappings(tile, slot);
+        if (mappings)
+            gnoi_texture_ask(&sight, texture, mappings, tile->x0 + column + 0.5, tile->y0 + row - 0.5, x, y, &tile->looks, texel);
+        return;
+    }
+    gnoi_tile_set_texel(tile, slot, row, column, x, y);
+    memcpy(texel, tile->texel, sizeof tile->texel);
+}
+
 vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n)
 {
     uint32_t material = slot->receiver.poly->material;

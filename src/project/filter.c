@@ -1,418 +1,360 @@
-/* filter.c -- see filter.h.
- *
- * A part of the pixel's square is a convex polygon in picture coordinates relative to the pixel's centre. A line S = c of
- * the pattern cuts it where s - c w = 0, which is linear there; so no point is ever projected.
- * Cells of the tree, coarsest first: blocks of 2^k x 2^k whole patterns (levels above the picture's last, all with the picture's
- * mean), then the levels of the picture, down to its elements. Every cell is an interval in S and one in T, and halving both
- * halves neither element nor pattern.
- */
+/* filter.c -- see filter.h. */
 #include "project/filter.h"
-#include "project/filter_cells.h"
-#include <math.h>
+#include "project/filter_cut.h"
+#include "project/filter_lanes.h"
+#include <string.h>
 
-#define CORNERS 12       /* of a part: the square's four and one for each cut by two cells' sides, a horizon and rounding */
-#define TOLERANCE 0.0015 /* aim for the error of a pixel's mean */
-#define START_CELLS 3    /* at most so many cells side by side when a pixel is begun */
-#define STRETCH 3.0      /* within a part w changes by at most this factor before it is halved */
-#define MAX_HALVINGS 6
-#define FAR_PATTERNS 1e9 /* patterns away from the first that can still be told apart */
+#define MOST_BEND 0.03     /* share by which w may change from a look's middle to its border */
+#define MOST_STEEP 0.2     /* and from a pixel's, or it is cut */
+#define FEW_CELLS 64       /* so many elements are weighed without a look at coarser cells */
+#define MANY_CELLS 4000    /* and these rather than being cut */
+#define MOST_COLUMNS 60.0  /* of a look */
+#define MOST_ROWS 60.0
+#define MOST_PARTS 64
+#define LEAST_TURN 1e-4    /* of a look's area to the square of its length, in elements: thinner ones drown in rounding */
+#define LEAST_LENGTH 1e-8
+#define MOST_THICKENED 64.0 /* length up to which they are made so thick; a fraction of an element even then */
+#define FAR_ELEMENTS 1e9   /* of int's range */
+#define BLOCK_TOLERANCE 0.004 /* aim for the error of a pixel's mean from cells of a coarse level, none of them large or drawn out */
+#define BLOCK_SIDE 24      /* of such cells at most */
 
-typedef struct point {
-    double x, y;
-} point;
+/* ---- answers -------------------------------------------------------------------------------------------------------------- */
 
-typedef struct part {
-    int count;
-    point p[CORNERS];
-} part;
-
-typedef struct filter {
-    const gnoi_image *image;
-    const gno_texture *how;
-    gnoi_screen_plane s, t, w; /* s and t in elements, over the pixel */
-    int top;                   /* the picture's last level */
-    double sum[4], area;
-} filter;
-
-/* A cell along one axis: interval `index` of 2^level elements of copy `copy` of the pattern; above the last level an interval of
- * 2^(level - top) copies, `copy` being its number. */
-typedef struct cell {
-    double copy;
-    int index;
-} cell;
-
-static double at(const gnoi_screen_plane *f, point p) { return f->fx * p.x + f->fy * p.y + f->f0; }
-
-static double area_of(const part *a)
+/* The cell of a level at place i of n; -1 where there is none. */
+static int wrapped(int i, int n, gno_wrap wrap)
 {
-    double sum = 0;
-    for (int i = 1; i + 1 < a->count; i++)
-        sum += (a->p[i].x - a->p[0].x) * (a->p[i + 1].y - a->p[0].y) - (a->p[i].y - a->p[0].y) * (a->p[i + 1].x - a->p[0].x);
-    return 0.5 * fabs(sum);
+    int copy;
+    if (i >= 0 && i < n)
+        return i;
+    if (wrap == GNO_WRAP_CLAMP)
+        return i < 0 ? 0 : n - 1;
+    if (wrap == GNO_WRAP_NONE)
+        return -1;
+    copy = i >= 0 ? i / n : -1 - (-1 - i) / n;
+    i -= copy * n;
+    return wrap == GNO_WRAP_MIRROR && copy % 2 != 0 ? n - 1 - i : i;
 }
 
-/* Cuts a part by the line f = 0 in two. Either result may be empty. */
-static void cut(const part *a, const gnoi_screen_plane *f, part *below, part *above)
+typedef struct weighed {
+    float value[4], weight;
+} weighed;
+
+/* Solid bytes, all of them within the picture. */
+static void add_bytes(const gnoi_image *image, int column, int row, const gnoi_lane_row *cells, int lane, weighed *sum)
 {
-    double side[CORNERS];
-    int low = 0, high = 0;
-    for (int i = 0; i < a->count; i++) {
-        side[i] = at(f, a->p[i]);
-        low += side[i] <= 0;
-        high += side[i] >= 0;
+    const float *decode = image->decode;
+    unsigned char(*v)[4] = image->bytes + (size_t)row * (size_t)image->width + (size_t)column;
+    float red = sum->value[0], green = sum->value[1], blue = sum->value[2], weight = sum->weight;
+    for (int c = 0; c < cells->columns[lane]; c++) {
+        float area = cells->area[c][lane];
+        red += area * decode[v[c][0]];
+        green += area * decode[v[c][1]];
+        blue += area * decode[v[c][2]];
+        weight += area;
     }
-    below->count = above->count = 0;
-    if (low == a->count) {
-        *below = *a;
-        return;
+    sum->value[0] = red;
+    sum->value[1] = green;
+    sum->value[2] = blue;
+    sum->weight = weight;
+}
+
+static void add_values(const gnoi_look *look, int column, int row, const gnoi_lane_row *cells, int lane, weighed *sum)
+{
+    const gnoi_image_level *level = &look->image->level[look->level];
+    int j = wrapped(row, level->height, (gno_wrap)look->wrap);
+    for (int c = 0; c < cells->columns[lane]; c++) {
+        float area = cells->area[c][lane], value[4] = {1, 1, 1, 1};
+        int i = wrapped(column + c, level->width, (gno_wrap)look->wrap);
+        if (i >= 0 && j >= 0)
+            gnoi_image_value(look->image, look->level, i, j, value);
+        for (int k = 0; k < 4; k++)
+            sum->value[k] += area * value[k];
+        sum->weight += area;
     }
-    if (high == a->count || a->count + 2 > CORNERS) {
-        *above = *a;
-        return;
+}
+
+static void answer(const gnoi_look *look, const weighed *sum)
+{
+    float k = look->share / sum->weight;
+    for (int i = 0; i < 3; i++)
+        look->mean[i] += k * sum->value[i];
+    look->mean[3] += look->solid ? look->share : k * sum->value[3];
+}
+
+static void answer_together(const gnoi_look *const look[GNOI_LANES], int count)
+{
+    gnoi_lanes lanes;
+    gnoi_lane_row cells;
+    weighed sum[GNOI_LANES];
+    int rows = 0;
+    for (int i = 0; i < GNOI_LANES; i++) {
+        const gnoi_look *l = look[i < count ? i : 0];
+        lanes.s[i] = l->s, lanes.t[i] = l->t;
+        lanes.sx[i] = l->sx, lanes.sy[i] = l->sy;
+        lanes.tx[i] = l->tx, lanes.ty[i] = l->ty;
+        lanes.wx[i] = l->wx, lanes.wy[i] = l->wy;
     }
-    for (int i = 0; i < a->count; i++) {
-        int j = i + 1 < a->count ? i + 1 : 0;
-        if (side[i] <= 0)
-            below->p[below->count++] = a->p[i];
-        if (side[i] >= 0)
-            above->p[above->count++] = a->p[i];
-        if ((side[i] < 0 && side[j] > 0) || (side[i] > 0 && side[j] < 0)) {
-            double k = side[i] / (side[i] - side[j]);
-            point c = {a->p[i].x + k * (a->p[j].x - a->p[i].x), a->p[i].y + k * (a->p[j].y - a->p[i].y)};
-            below->p[below->count++] = c;
-            above->p[above->count++] = c;
+    memset(sum, 0, sizeof sum);
+    gnoi_lanes_start(&lanes);
+    for (int i = 0; i < count; i++)
+        rows = lanes.rows[i] > rows ? lanes.rows[i] : rows;
+    for (int r = 0; r < rows; r++) {
+        gnoi_lanes_row(&lanes, r, &cells);
+        for (int i = 0; i < count; i++) {
+            const gnoi_look *l = look[i];
+            int column = l->column + (int)cells.first[i], row = l->row + (int)lanes.first_row[i] + r;
+            if (r >= lanes.rows[i])
+                continue;
+            if (l->solid && row >= 0 && row < l->image->height && column >= 0 && column + cells.columns[i] <= l->image->width)
+                add_bytes(l->image, column, row, &cells, i, &sum[i]);
+            else
+                add_values(l, column, row, &cells, i, &sum[i]);
         }
     }
+    for (int i = 0; i < count; i++)
+        answer(look[i], &sum[i]);
 }
 
-/* Cuts by the pattern line S (or T) = c. */
-static void cut_at(const filter *f, const gnoi_screen_plane *axis, double c, const part *a, part *below, part *above)
+/* Looks of about one size go together, or many lanes would wait for few. */
+#define SIZES 9
+
+static int size_of(float extent)
 {
-    gnoi_screen_plane line = {axis->fx - c * f->w.fx, axis->fy - c * f->w.fy, axis->f0 - c * f->w.f0};
-    cut(a, &line, below, above);
+    return extent < 4 ? (int)extent : extent < 6 ? 4 : extent < 9 ? 5 : extent < 14 ? 6 : extent < 24 ? 7 : 8;
 }
 
-static void add(filter *f, const float value[4], double area)
+void gnoi_looks_answer(gnoi_looks *looks)
 {
-    for (int k = 0; k < 4; k++)
-        f->sum[k] += area * (double)value[k];
-    f->area += area;
-}
-
-static void add_mean(filter *f, double area)
-{
-    float value[4];
-    gnoi_image_value(f->image, f->top, 0, 0, value);
-    add(f, value, area);
-}
-
-/* ---- cells -------------------------------------------------------------------------------------------------------------- */
-
-static int is_mirrored(const filter *f, double copy)
-{
-    return f->how->wrap == GNO_WRAP_MIRROR && fmod(copy, 2) != 0;
-}
-
-/* Where a cell of `level` is halved, in elements; its lower half is child[0]. Returns 0 where it has only child[0]. */
-static int halve(const filter *f, int level, int elements, cell c, double *where, cell child[2])
-{
-    double begin;
-    int middle;
-    if (level > f->top) {
-        child[0].copy = 2 * c.copy;
-        child[1].copy = 2 * c.copy + 1;
-        child[0].index = child[1].index = 0;
-        *where = child[1].copy * ldexp((double)elements, level - f->top - 1);
-        return 1;
+    const gnoi_look *order[GNOI_LOOKS];
+    unsigned char size[GNOI_LOOKS];
+    int end[2 * SIZES * SIZES] = {0}, count = 0;
+    for (int i = 0; i < looks->count; i++) {
+        const gnoi_look *l = &looks->look[i];
+        int uneven = fabsf(l->wx) + fabsf(l->wy) > GNOI_EVEN_BEND;
+        size[i] = (unsigned char)((uneven * SIZES + size_of(fabsf(l->tx) + fabsf(l->ty))) * SIZES + size_of(fabsf(l->sx) + fabsf(l->sy)));
+        end[size[i]]++;
     }
-    child[0].copy = child[1].copy = c.copy;
-    child[0].index = 2 * c.index;
-    child[1].index = 2 * c.index + 1;
-    middle = child[1].index << (level - 1);
-    if (middle >= elements)
+    for (int k = 0; k < 2 * SIZES * SIZES; k++) {
+        int n = end[k];
+        end[k] = count;
+        count += n;
+    }
+    for (int i = 0; i < looks->count; i++)
+        order[end[size[i]]++] = &looks->look[i];
+    for (int i = 0; i < looks->count; i += GNOI_LANES)
+        answer_together(order + i, looks->count - i < GNOI_LANES ? looks->count - i : GNOI_LANES);
+    looks->count = 0;
+}
+
+/* ---- questions ------------------------------------------------------------------------------------------------------------- */
+
+/* A square of the picture on the pattern: its middle's place, in elements, and what its sides change place and w by, as in gnoi_look. */
+typedef struct view {
+    double s, t, w, sx, sy, tx, ty, wx, wy;
+} view;
+
+static view view_at(const gnoi_image *image, const gnoi_pattern *p, double x, double y)
+{
+    double w = gnoi_plane_at(&p->w, x, y), k = 1 / w, s = gnoi_plane_at(&p->s, x, y) * k, t = gnoi_plane_at(&p->t, x, y) * k;
+    double across = k * image->width, up = k * image->height;
+    view v;
+    v.s = s * image->width;
+    v.t = t * image->height;
+    v.w = w;
+    v.sx = (p->s.fx - s * p->w.fx) * across;
+    v.sy = (p->s.fy - s * p->w.fy) * across;
+    v.tx = (p->t.fx - t * p->w.fx) * up;
+    v.ty = (p->t.fy - t * p->w.fy) * up;
+    v.wx = p->w.fx * k;
+    v.wy = p->w.fy * k;
+    return v;
+}
+
+/* Linear enlargement: the pixel's image on the pattern grows by one element each way, so that a pixel small against the elements
+ * sees the square of one element around it, which weights its neighbours bilinearly. Returns 0 where it is too large for that. */
+static int enlarge(view *v)
+{
+    int turned = fabs(v->sx) + fabs(v->ty) < fabs(v->sy) + fabs(v->tx);
+    if (!(fabs(v->sx) + fabs(v->sy) + fabs(v->tx) + fabs(v->ty) <= 16))
         return 0;
-    begin = c.copy * elements;
-    *where = begin + middle;
-    if (is_mirrored(f, c.copy)) {
-        *where = begin + elements - middle;
-        child[0].index = 2 * c.index + 1;
-        child[1].index = 2 * c.index;
-    }
+    v->sx += turned ? 0 : copysign(1, v->sx);
+    v->sy += turned ? copysign(1, v->sy) : 0;
+    v->tx += turned ? copysign(1, v->tx) : 0;
+    v->ty += turned ? 0 : copysign(1, v->ty);
+    v->wx = v->wy = 0;
     return 1;
 }
 
-/* The upper end of a cell, in elements. */
-static double end_of(const filter *f, int level, int elements, cell c)
+static double turn_of(const view *v) { return fabs(v->sx * v->ty - v->sy * v->tx); }
+
+static double square_length(const view *v)
 {
-    int end;
-    if (level > f->top)
-        return (c.copy + 1) * ldexp((double)elements, level - f->top);
-    if (is_mirrored(f, c.copy))
-        return c.copy * elements + elements - (c.index << level);
-    end = (c.index + 1) << level;
-    return c.copy * elements + (end < elements ? end : elements);
+    double wide = fabs(v->sx) + fabs(v->sy), high = fabs(v->tx) + fabs(v->ty);
+    return wide * wide + high * high;
 }
 
-/* The cell of `level` that holds element coordinate v. */
-static cell cell_at(const filter *f, int level, int elements, double v)
+/* Off the line between two elements, for what runs along it. */
+static double aside(double place, double extent)
 {
-    cell c = {0, 0};
-    int element;
-    if (level > f->top) {
-        c.copy = floor(v / ldexp((double)elements, level - f->top));
-        return c;
+    double element = floor(place), part = place - element;
+    return element + (part < extent ? extent : part > 1 - extent ? 1 - extent : part);
+}
+
+/* Patterns drawn out to lines, as texture coordinates that do not differ make them, get the least thickness. */
+static void thicken(view *v)
+{
+    double need = 2 * LEAST_TURN * square_length(v), a = v->sx * v->sx + v->tx * v->tx, b = v->sy * v->sy + v->ty * v->ty, k;
+    int flat_s = v->sx == 0 && v->sy == 0, flat_t = v->tx == 0 && v->ty == 0;
+    if (turn_of(v) > 0.5 * need || !(need < 2 * LEAST_TURN * MOST_THICKENED * MOST_THICKENED) || !(need > 0))
+        return;
+    k = copysign(need / (a > b ? a : b), v->sx * v->ty - v->sy * v->tx);
+    if (a > b) {
+        v->sy -= k * v->tx;
+        v->ty += k * v->sx;
+    } else {
+        v->sx += k * v->ty;
+        v->tx -= k * v->sy;
     }
-    c.copy = floor(v / elements);
-    element = (int)(v - c.copy * elements);
-    element = element < 0 ? 0 : element >= elements ? elements - 1 : element;
-    if (is_mirrored(f, c.copy))
-        element = elements - 1 - element;
-    c.index = element >> level;
-    return c;
+    if (flat_s)
+        v->s = aside(v->s, fabs(v->sx) + fabs(v->sy));
+    if (flat_t)
+        v->t = aside(v->t, fabs(v->tx) + fabs(v->ty));
 }
 
-/* ---- the tree ------------------------------------------------------------------------------------------------------------ */
-
-/* 1 when the part lies inside the pixel's square, so that it is its whole cell. */
-static int is_whole(const part *a)
+static int is_sound(const view *v)
 {
-    for (int i = 0; i < a->count; i++)
-        if (fabs(a->p[i].x) > 0.5 - 1e-12 || fabs(a->p[i].y) > 0.5 - 1e-12)
-            return 0;
-    return 1;
+    double length = square_length(v);
+    return turn_of(v) > LEAST_TURN * length && length > LEAST_LENGTH * LEAST_LENGTH &&
+           fabs(v->wx) + fabs(v->wy) < 2.1 * MOST_BEND && fabs(v->s) < FAR_ELEMENTS && fabs(v->t) < FAR_ELEMENTS;
 }
 
-/* By how much w changes over the part, relative to its largest. */
-static double stretch_of(const filter *f, const part *a)
+/* A place along one axis brought into the first pattern, or pair of patterns. */
+static double home(double v, int elements, gno_wrap wrap)
 {
-    double least = HUGE_VAL, most = -HUGE_VAL;
-    for (int i = 0; i < a->count; i++) {
-        double w = at(&f->w, a->p[i]);
-        least = w < least ? w : least;
-        most = w > most ? w : most;
-    }
-    return (most - least) / most;
+    double period = wrap == GNO_WRAP_MIRROR ? 2.0 * elements : elements;
+    if ((v >= 0 && v < elements) || wrap == GNO_WRAP_CLAMP || wrap == GNO_WRAP_NONE)
+        return v;
+    return v - period * floor(v / period);
 }
 
-static int is_enough(const filter *f, const part *a, double area, float spread)
+static void add_look(gnoi_looks *looks, const gnoi_image *image, gno_wrap wrap, const view *v, int level, double share, float mean[4])
 {
-    double largest;
-    if (!(spread > 0))
-        return 1;
-    largest = gnoi_filter_most_area(TOLERANCE, spread);
-    return area <= largest || (is_whole(a) && area * 3 * stretch_of(f, a) <= largest);
+    gnoi_look *l = &looks->look[looks->count++];
+    double k = 1.0 / (1 << level), s = k * home(v->s, image->width, wrap), t = k * home(v->t, image->height, wrap);
+    double column = floor(s + 0.5), row = floor(t + 0.5);
+    l->image = image;
+    l->mean = mean;
+    l->share = (float)share;
+    l->column = (int)column;
+    l->row = (int)row;
+    l->s = (float)(s - column), l->t = (float)(t - row);
+    l->sx = (float)(k * v->sx), l->sy = (float)(k * v->sy);
+    l->tx = (float)(k * v->tx), l->ty = (float)(k * v->ty);
+    l->wx = (float)v->wx, l->wy = (float)v->wy;
+    l->level = (unsigned char)level;
+    l->wrap = (unsigned char)wrap;
+    l->solid = level == 0 && image->bytes && !image->has_alpha;
 }
 
-static void value_at(const filter *f, int level, cell s, cell t, float value[4])
+/* ---- coarser cells ---------------------------------------------------------------------------------------------------------- */
+
+/* Whether cells first .. first + count - 1 along an axis are all of the same width: within the picture, or in any if it is so many of them. */
+static int is_on_grid(gno_wrap wrap, int first, int count, int elements, int level)
 {
-    if (level > f->top)
-        gnoi_image_value(f->image, f->top, 0, 0, value);
-    else
-        gnoi_image_value(f->image, level, s.index, t.index, value);
+    int repeats = wrap == GNO_WRAP_REPEAT || wrap == GNO_WRAP_MIRROR;
+    return (first >= 0 && first + count <= elements >> level) || (repeats && (elements & ((1 << level) - 1)) == 0);
 }
 
-static float spread_at(const filter *f, int level, cell s, cell t)
+/* 1 when cells of `level` > 0 may stand for their elements: few enough, on one grid, each so small a share of the pixel, or so even, that
+ * what its mean does to the part of it that is seen is below the tolerance. */
+static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int level)
 {
-    const gnoi_image_level *l = &f->image->level[level < f->top ? level : f->top];
-    if (!l->spread)
+    const gnoi_image_level *l = &image->level[level];
+    double k = 1.0 / (1 << level), s = k * home(v->s, image->width, wrap), t = k * home(v->t, image->height, wrap);
+    double wide = 0.5 * k * (fabs(v->sx) + fabs(v->sy)), high = 0.5 * k * (fabs(v->tx) + fabs(v->ty));
+    int i0 = (int)floor(s - wide), j0 = (int)floor(t - high), columns, rows;
+    float spread = 0;
+    if (2 * wide + 2 > BLOCK_SIDE || 2 * high + 2 > BLOCK_SIDE)
         return 0;
-    return level > f->top ? l->spread[0] : l->spread[(size_t)t.index * (size_t)l->width + (size_t)s.index];
+    columns = (int)floor(s + wide) - i0 + 1;
+    rows = (int)floor(t + high) - j0 + 1;
+    if (!is_on_grid(wrap, i0, columns, image->width, level) || !is_on_grid(wrap, j0, rows, image->height, level))
+        return 0;
+    for (int j = 0; j < rows; j++)
+        for (int i = 0; i < columns; i++) {
+            size_t row = (size_t)wrapped(j0 + j, l->height, wrap), column = (size_t)wrapped(i0 + i, l->width, wrap);
+            float own = l->spread[row * (size_t)l->width + column];
+            spread = own > spread ? own : spread;
+        }
+    return !(spread > 0) || 1.0 / (columns * rows) <= gnoi_filter_most_area(BLOCK_TOLERANCE, spread);
 }
 
-static void descend(filter *f, int level, cell s, cell t, const part *a)
+/* The level whose cells to weigh; -1 where there are too many. */
+static int level_for(const gnoi_image *image, gno_wrap wrap, const view *v)
 {
-    double area = area_of(a), where;
-    part half[2], quarter[2];
-    cell across[2], up[2];
-    if (a->count < 3)
-        return;
-    if (level == 0 || is_enough(f, a, area, spread_at(f, level, s, t))) {
-        float value[4];
-        value_at(f, level, s, t, value);
-        add(f, value, area);
-        return;
-    }
-    half[1].count = 0;
-    if (halve(f, level, f->image->width, s, &where, across))
-        cut_at(f, &f->s, where, a, &half[0], &half[1]);
-    else
-        half[0] = *a;
-    for (int i = 0; i < 2; i++) {
-        if (half[i].count < 3)
-            continue;
-        quarter[1].count = 0;
-        if (halve(f, level, f->image->height, t, &where, up))
-            cut_at(f, &f->t, where, &half[i], &quarter[0], &quarter[1]);
-        else
-            quarter[0] = half[i];
-        for (int j = 0; j < 2; j++)
-            if (quarter[j].count >= 3)
-                descend(f, level - 1, across[i], up[j], &quarter[j]);
-    }
-}
-
-/* ---- a part of the pixel ------------------------------------------------------------------------------------------------- */
-
-typedef struct range {
-    double low, high;
-} range;
-
-static range range_of(const filter *f, const gnoi_screen_plane *axis, const part *a)
-{
-    range r = {HUGE_VAL, -HUGE_VAL};
-    for (int i = 0; i < a->count; i++) {
-        double v = at(axis, a->p[i]) / at(&f->w, a->p[i]);
-        r.low = v < r.low ? v : r.low;
-        r.high = v > r.high ? v : r.high;
-    }
-    return r;
-}
-
-/* The level at which both ranges meet at most START_CELLS cells. */
-static int start_level(const filter *f, range s, range t)
-{
-    double widest = s.high - s.low > t.high - t.low ? s.high - s.low : t.high - t.low;
+    double wide = fabs(v->sx) + fabs(v->sy), high = fabs(v->tx) + fabs(v->ty), cells = (wide + 1) * (high + 1), widest = wide > high ? wide : high;
     int level = 0;
-    double cell_side = 1;
-    for (; level < f->top && widest > cell_side * (START_CELLS - 1); level++)
-        cell_side *= 2;
-    if (level < f->top)
-        return level;
-    cell_side = f->image->width < f->image->height ? f->image->width : f->image->height;
-    for (; widest > cell_side * (START_CELLS - 1) && level < f->top + 60; level++)
-        cell_side *= 2;
-    return level;
+    if (cells <= FEW_CELLS)
+        return 0;
+    if (!(widest < FAR_ELEMENTS))
+        return -1;
+    while (level + 1 < image->level_count && widest > (double)(3 << level))
+        level++;
+    for (; level > 0; level--)
+        if (is_fine(image, wrap, v, level))
+            return level;
+    return cells <= MANY_CELLS ? 0 : -1;
 }
 
-static void integrate_row(filter *f, int level, cell s, range t, part row)
+/* ---- parts ------------------------------------------------------------------------------------------------------------------ */
+
+/* How many parts side by side and one above the other make sound looks. Returns 0 where that is too many. */
+static int find_parts(const view *v, int level, int *across, int *down)
 {
-    int elements = f->image->height;
-    cell c = cell_at(f, level, elements, t.low);
-    while (row.count >= 3) {
-        part inside, rest;
-        double end = end_of(f, level, elements, c);
-        if (end >= t.high) {
-            descend(f, level, s, c, &row);
-            return;
+    double k = 1.0 / (1 << level), steep = 0.5 * (fabs(v->wx) + fabs(v->wy)), bend = (1 - steep) * MOST_BEND, nx, ny;
+    if (!(steep < MOST_STEEP))
+        return 0;
+    nx = ceil(fabs(v->wx) / bend);
+    ny = ceil(fabs(v->wy) / bend);
+    nx = nx < 1 || steep < MOST_BEND ? 1 : nx;
+    ny = ny < 1 || steep < MOST_BEND ? 1 : ny;
+    while (nx * ny <= MOST_PARTS && (k * (fabs(v->sx) / nx + fabs(v->sy) / ny) > MOST_COLUMNS || k * (fabs(v->tx) / nx + fabs(v->ty) / ny) > MOST_ROWS)) {
+        if ((fabs(v->sx) + fabs(v->tx)) * ny > (fabs(v->sy) + fabs(v->ty)) * nx)
+            nx++;
+        else
+            ny++;
+    }
+    *across = (int)nx;
+    *down = (int)ny;
+    return nx * ny <= MOST_PARTS;
+}
+
+static view part_at(const gnoi_image *image, const gnoi_pattern *p, double x, double y, double across, double down)
+{
+    view v = view_at(image, p, x, y);
+    v.sx /= across, v.tx /= across, v.wx /= across;
+    v.sy /= down, v.ty /= down, v.wy /= down;
+    return v;
+}
+
+/* The looks of a pixel in parts; 0 where one of them would not be sound. */
+static int add_parts(gnoi_looks *looks, const gnoi_image *image, gno_wrap wrap, const gnoi_pattern *p, double x, double y, int level,
+                     int across, int down, float mean[4])
+{
+    int start = looks->count;
+    for (int i = 0; i < across * down; i++) {
+        view v = part_at(image, p, x - 0.5 + (i % across + 0.5) / across, y - 0.5 + (i / across + 0.5) / down, across, down);
+        thicken(&v);
+        if (!is_sound(&v)) {
+            looks->count = start;
+            return 0;
         }
-        cut_at(f, &f->t, end, &row, &inside, &rest);
-        descend(f, level, s, c, &inside);
-        row = rest;
-        c = cell_at(f, level, elements, end + 0.5);
+        add_look(looks, image, wrap, &v, level, 1.0 / (across * down), mean);
     }
+    return 1;
 }
 
-/* The part, all within the pattern as it repeats. */
-static void integrate_pattern(filter *f, const part *a)
-{
-    range s = range_of(f, &f->s, a), t = range_of(f, &f->t, a);
-    int level, elements = f->image->width;
-    part rest = *a;
-    cell c;
-    if (!(fabs(s.low) + fabs(s.high) < FAR_PATTERNS * f->image->width) ||
-        !(fabs(t.low) + fabs(t.high) < FAR_PATTERNS * f->image->height)) {
-        add_mean(f, area_of(a));
-        return;
-    }
-    level = start_level(f, s, t);
-    c = cell_at(f, level, elements, s.low);
-    while (rest.count >= 3) {
-        part column, more;
-        double end = end_of(f, level, elements, c);
-        if (end >= s.high) {
-            integrate_row(f, level, c, t, rest);
-            return;
-        }
-        cut_at(f, &f->s, end, &rest, &column, &more);
-        integrate_row(f, level, c, t, column);
-        rest = more;
-        c = cell_at(f, level, elements, end + 0.5);
-    }
-}
-
-/* Beside a pattern that is clamped: the elements of one column, or row, go on and on. */
-static void integrate_border(filter *f, const part *a, int along_t, int border)
-{
-    int elements = along_t ? f->image->height : f->image->width;
-    const gnoi_screen_plane *axis = along_t ? &f->t : &f->s;
-    range r = range_of(f, axis, a);
-    part rest = *a;
-    int from = r.low > 0 ? (int)(r.low < elements ? r.low : elements - 1) : 0, step = 1;
-    double wide = (r.high < elements ? r.high : elements) - from;
-    while (wide > 256.0 * step)
-        step *= 2;
-    for (int i = from; rest.count >= 3; i += step) {
-        part inside, more = {0, {{0, 0}}};
-        float value[4];
-        int middle = i + step / 2 < elements ? i + step / 2 : elements - 1;
-        if (i + step < elements)
-            cut_at(f, axis, i + step, &rest, &inside, &more);
-        else
-            inside = rest;
-        gnoi_image_value(f->image, 0, along_t ? border : middle, along_t ? middle : border, value);
-        if (inside.count >= 3)
-            add(f, value, area_of(&inside));
-        rest = more;
-    }
-}
-
-/* A pattern that does not repeat: what lies on it, and what lies beside it. */
-static void integrate_once(filter *f, const part *a)
-{
-    static const float plain[4] = {1, 1, 1, 1};
-    part side[4], rest, inside;
-    int w = f->image->width, h = f->image->height;
-    cut_at(f, &f->s, 0, a, &side[0], &rest);
-    cut_at(f, &f->s, w, &rest, &inside, &side[1]);
-    cut_at(f, &f->t, 0, &inside, &side[2], &rest);
-    cut_at(f, &f->t, h, &rest, &inside, &side[3]);
-    if (inside.count >= 3)
-        integrate_pattern(f, &inside);
-    for (int i = 0; i < 4; i++) {
-        if (side[i].count < 3)
-            continue;
-        if (f->how->wrap == GNO_WRAP_NONE)
-            add(f, plain, area_of(&side[i]));
-        else
-            integrate_border(f, &side[i], i < 2, i == 0 || i == 2 ? 0 : (i == 1 ? w : h) - 1);
-    }
-}
-
-/* Halves the part across the direction in which w changes until it changes little. What still reaches the horizon after that
- * sees so much of a pattern that repeats that it sees its mean, and of others nothing. */
-static void integrate(filter *f, const part *a, int halvings)
-{
-    double least = HUGE_VAL, most = -HUGE_VAL, low, high;
-    gnoi_screen_plane across = {f->w.fx, f->w.fy, 0};
-    part half[2];
-    if (a->count < 3)
-        return;
-    for (int i = 0; i < a->count; i++) {
-        double w = at(&f->w, a->p[i]);
-        least = w < least ? w : least;
-        most = w > most ? w : most;
-    }
-    if (least > 0 && most <= STRETCH * least) {
-        if (f->how->wrap == GNO_WRAP_CLAMP || f->how->wrap == GNO_WRAP_NONE)
-            integrate_once(f, a);
-        else
-            integrate_pattern(f, a);
-        return;
-    }
-    if (!(most > 0))
-        return;
-    if (halvings == MAX_HALVINGS) {
-        if (f->how->wrap == GNO_WRAP_REPEAT || f->how->wrap == GNO_WRAP_MIRROR)
-            add_mean(f, area_of(a) * (least > 0 ? 1 : most / (most - least)));
-        return;
-    }
-    low = (least > 0 ? least : 0) - f->w.f0;
-    high = most - f->w.f0;
-    across.f0 = -0.5 * (low + high);
-    cut(a, &across, &half[0], &half[1]);
-    integrate(f, &half[1], halvings + 1);
-    integrate(f, &half[0], halvings + 1);
-}
+/* ---- a pixel ---------------------------------------------------------------------------------------------------------------- */
 
 static gnoi_screen_plane relative(gnoi_screen_plane f, double factor, double x, double y)
 {
@@ -422,53 +364,57 @@ static gnoi_screen_plane relative(gnoi_screen_plane f, double factor, double x, 
     return f;
 }
 
-/* Linear enlargement: the pixel's image on the pattern grows by one element each way, so that a pixel small against the elements
- * sees the square of one element around it, which weights its neighbours bilinearly. */
-static void enlarge(filter *f)
+static gnoi_screen_plane around(double f0, double fx, double fy)
 {
-    double w = f->w.f0, s = f->s.f0 / w, t = f->t.f0 / w;
-    double sx = (f->s.fx - s * f->w.fx) / w, sy = (f->s.fy - s * f->w.fy) / w, tx = (f->t.fx - t * f->w.fx) / w, ty = (f->t.fy - t * f->w.fy) / w;
-    int turned = fabs(sx) + fabs(ty) < fabs(sy) + fabs(tx);
-    if (fabs(sx) + fabs(sy) + fabs(tx) + fabs(ty) > 16)
-        return;
-    f->s.fx = sx + (turned ? 0 : copysign(1, sx));
-    f->s.fy = sy + (turned ? copysign(1, sy) : 0);
-    f->t.fx = tx + (turned ? copysign(1, tx) : 0);
-    f->t.fy = ty + (turned ? 0 : copysign(1, ty));
-    f->s.f0 = s;
-    f->t.f0 = t;
-    f->w.fx = f->w.fy = 0;
-    f->w.f0 = 1;
+    gnoi_screen_plane f;
+    f.fx = fx;
+    f.fy = fy;
+    f.f0 = f0;
+    return f;
 }
 
-/* ---- a pixel ------------------------------------------------------------------------------------------------------------- */
-
-void gnoi_filter_pixel(const gnoi_image *image, const gno_texture *how, const gnoi_pattern *pattern, double x, double y, double xs,
-                       double ys, float mean[4])
+static void cut(const gnoi_image *image, gno_wrap wrap, const view *enlarged, const gnoi_pattern *p, double x, double y, double xs,
+                double ys, float mean[4])
 {
-    static const part square = {4, {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
-    filter f;
-    f.image = image;
-    f.how = how;
-    f.top = image->level_count - 1;
-    f.s = relative(pattern->s, image->width, x, y);
-    f.t = relative(pattern->t, image->height, x, y);
-    f.w = relative(pattern->w, 1, x, y);
-    if (how->filter == GNO_FILTER_LINEAR && f.w.f0 > 0)
-        enlarge(&f);
-    if (gnoi_filter_cells(image, how, &f.s, &f.t, &f.w, mean))
-        return;
-    for (int k = 0; k < 4; k++)
-        f.sum[k] = 0;
-    f.area = 0;
-    integrate(&f, &square, 0);
-    if (!(f.area > 0)) {
-        f.s = relative(pattern->s, image->width, xs, ys);
-        f.t = relative(pattern->t, image->height, xs, ys);
-        f.w = relative(pattern->w, 1, xs, ys);
-        f.s.fx = f.s.fy = f.t.fx = f.t.fy = f.w.fx = f.w.fy = 0;
-        integrate(&f, &square, 0);
+    gnoi_screen_plane s = relative(p->s, image->width, x, y), t = relative(p->t, image->height, x, y), w = relative(p->w, 1, x, y);
+    if (enlarged) {
+        s = around(enlarged->s, enlarged->sx, enlarged->sy);
+        t = around(enlarged->t, enlarged->tx, enlarged->ty);
+        w = around(1, 0, 0);
     }
-    for (int k = 0; k < 4; k++)
-        mean[k] = f.area > 0 ? (float)(f.sum[k] / f.area) : 1;
+    if (gnoi_filter_cut(image, wrap, &s, &t, &w, mean))
+        return;
+    s = around(image->width * gnoi_plane_at(&p->s, xs, ys), 0, 0);
+    t = around(image->height * gnoi_plane_at(&p->t, xs, ys), 0, 0);
+    w = around(gnoi_plane_at(&p->w, xs, ys), 0, 0);
+    gnoi_filter_cut(image, wrap, &s, &t, &w, mean);
+}
+
+void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y,
+                    double xs, double ys, float mean[4])
+{
+    view v = view_at(image, p, x, y);
+    int enlarged = how->filter == GNO_FILTER_LINEAR && v.w > 0 && enlarge(&v), level, across, down;
+    if (looks->count + MOST_PARTS > GNOI_LOOKS)
+        gnoi_looks_answer(looks);
+    thicken(&v);
+    if (v.w > 0 && (level = level_for(image, how->wrap, &v)) >= 0 && find_parts(&v, level, &across, &down)) {
+        mean[0] = mean[1] = mean[2] = mean[3] = 0;
+        if (across * down > 1 && add_parts(looks, image, how->wrap, p, x, y, level, across, down, mean))
+            return;
+        if (across * down == 1 && is_sound(&v)) {
+            add_look(looks, image, how->wrap, &v, level, 1, mean);
+            return;
+        }
+    }
+    cut(image, how->wrap, enlarged ? &v : NULL, p, x, y, xs, ys, mean);
+}
+
+void gnoi_filter_pixel(const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y, double xs, double ys,
+                       float mean[4])
+{
+    gnoi_looks looks;
+    looks.count = 0;
+    gnoi_looks_ask(&looks, image, how, p, x, y, xs, ys, mean);
+    gnoi_looks_answer(&looks);
 }

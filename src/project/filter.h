@@ -1,11 +1,12 @@
-/* filter.h -- the mean of a texture's picture over one pixel.
+/* filter.h -- the mean of a texture's picture over pixels.
  *
  * Place in the data flow: gnoi_image + gnoi_pattern over a pixel -> red, green, blue, alpha -> shading, holes.
  * The pixel's four corners bound a quadrilateral of the pattern; the pattern's elements (squares of one colour) are weighted by the
  * share of each that lies inside (Catmull 1974; Blinn and Newell 1976). Shares are areas in the picture: the lines between
- * elements are straight there too, so the pixel's square is cut by them, and what perspective does to areas is exact.
- * Prefiltered levels bound the cost: the square is cut by the coarsest cells first, and a piece is cut further while its cell's
- * spread says that this could change the result.
+ * elements are straight there too, and what perspective does to areas is taken into account.
+ * Pixels are asked for one by one and answered together: the usual ones, a quadrilateral over few cells of one level in which w hardly
+ * changes, share vector code (filter_lanes.h), each in a lane of its own, so that an answer does not depend on which others are
+ * asked for. Larger ones are parted into such; what is too large for that, or reaches the horizon, is cut (filter_cut.h).
  */
 #ifndef GNOI_PROJECT_FILTER_H
 #define GNOI_PROJECT_FILTER_H
@@ -13,8 +14,34 @@
 #include "project/pattern.h"
 #include "scene/image.h"
 
-/* The mean over the pixel whose centre is (x,y), the square of side 1 around it; red, green, blue multiplied by alpha. Beyond the
- * plane's horizon nothing counts. (xs,ys): a point where the surface is seen, for pixels that have nothing else. */
+#define GNOI_LOOKS 320
+
+/* A pixel, or a part of it, on the pattern, in cells of one level of the picture. */
+typedef struct gnoi_look {
+    const gnoi_image *image;
+    float *mean;          /* where its share of the pixel's mean is added */
+    float share;
+    int column, row;      /* of the cell from which its place is counted: so counted the border next to it is near zero, and sharp */
+    float s, t;           /* place of its middle */
+    float sx, sy, tx, ty; /* what one width and one height of it changes that by */
+    float wx, wy;         /* and w, relative to the middle's */
+    unsigned char level, wrap;
+    unsigned char solid;  /* level 0, bytes, no holes */
+} gnoi_look;
+
+typedef struct gnoi_looks {
+    int count;
+    gnoi_look look[GNOI_LOOKS];
+} gnoi_looks;
+
+/* Asks for the mean over the pixel whose centre is (x,y), the square of side 1 around it; red, green, blue multiplied by alpha.
+ * Beyond the plane's horizon nothing counts. (xs,ys): a point where the surface is seen, for pixels that have nothing else.
+ * mean is there after gnoi_looks_answer, and must stay in its place until then. */
+void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *pattern, double x, double y,
+                    double xs, double ys, float mean[4]);
+void gnoi_looks_answer(gnoi_looks *looks);
+
+/* Both for one pixel. */
 void gnoi_filter_pixel(const gnoi_image *image, const gno_texture *how, const gnoi_pattern *pattern, double x, double y, double xs,
                        double ys, float mean[4]);
 

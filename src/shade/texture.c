@@ -113,3 +113,10 @@ void gnoi_texture_at(const gnoi_sight *sight, const gno_texture *texture, gnoi_m
             rgba[k] = rgba[3] > 0 ? rgba[k] / rgba[3] : 0;
     }
 }
+
+void gnoi_texture_ask(const gnoi_sight *sight, const gno_texture *texture, gnoi_mapping *mapping, double x, double y, double xs,
+                      double ys, gnoi_looks *looks, float rgba[4])
+{
+    const gnoi_pattern *pattern = gnoi_mapping_seek(mapping, sight, texture, xs, ys);
+    gnoi_looks_ask(looks, &sight->scene->images[texture->image], texture, pattern, x, y, xs, ys, rgba);
+}

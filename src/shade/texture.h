@@ -7,7 +7,7 @@
 #ifndef GNOI_SHADE_TEXTURE_H
 #define GNOI_SHADE_TEXTURE_H
 
-#include "project/pattern.h"
+#include "project/filter.h"
 #include "scene/scene.h"
 #include "shade/interp.h"
 
@@ -39,5 +39,9 @@ const gnoi_pattern *gnoi_mapping_seek(gnoi_mapping *mapping, const gnoi_sight *s
  * solid share. */
 void gnoi_texture_at(const gnoi_sight *sight, const gno_texture *texture, gnoi_mapping *mapping, double x, double y, double xs,
                      double ys, float rgba[4]);
+
+/* The same for a picture without holes, by a queue: rgba is valid once that is answered. */
+void gnoi_texture_ask(const gnoi_sight *sight, const gno_texture *texture, gnoi_mapping *mapping, double x, double y, double xs,
+                      double ys, gnoi_looks *looks, float rgba[4]);
 
 #endif

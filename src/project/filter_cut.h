@@ -1,10 +1,10 @@
-/* filter_cells.h -- the usual pixel of the texture filter: few cells of one level, w almost constant.
+/* filter_cut.h -- the texture filter where nothing is simple: very many elements, w that changes manifold, the plane's horizon.
  *
- * Place: under filter.c, which cuts the square where this does not apply. The cells are weighed by their exact areas under the
- * quadrilateral of the pixel's corners (coverage.h).
+ * Place: under filter.c. The pixel's square is cut by the coarsest cells first, and a piece is cut further while its cell's spread says
+ * that this could change the result.
  */
-#ifndef GNOI_PROJECT_FILTER_CELLS_H
-#define GNOI_PROJECT_FILTER_CELLS_H
+#ifndef GNOI_PROJECT_FILTER_CUT_H
+#define GNOI_PROJECT_FILTER_CUT_H
 
 #include "project/pattern.h"
 #include "scene/image.h"
@@ -19,8 +19,8 @@ static inline double gnoi_filter_most_area(double tolerance, float spread)
     return share * sqrt(share) * 2.0; /* between the exponents 4/3 (random) and 2 (edge along the elements) */
 }
 
-/* The mean over the pixel; s and t in elements and w are relative to its middle. 0 where the square has to be cut instead. */
-int gnoi_filter_cells(const gnoi_image *image, const gno_texture *how, const gnoi_screen_plane *s, const gnoi_screen_plane *t,
-                      const gnoi_screen_plane *w, float mean[4]);
+/* The mean over the pixel; s and t in elements and w are relative to its middle. 0 where nothing of it is before the horizon. */
+int gnoi_filter_cut(const gnoi_image *image, gno_wrap wrap, const gnoi_screen_plane *s, const gnoi_screen_plane *t,
+                    const gnoi_screen_plane *w, float mean[4]);
 
 #endif

@@ -1,0 +1,40 @@
+/* filter_lanes.h -- exact areas of quadrilaterals in the cells of a unit grid, many quadrilaterals side by side.
+ *
+ * Place: under filter.c. Plain arithmetic without branches on arrays of lanes, which every machine does alike.
+ * A row of cells cuts the four edges into stretches. The area of the row's part of a quadrilateral left of a line x = L is the sum over
+ * the stretches of their height times the mean of max(L - x, 0), and differences of these are the cells' areas (Green's theorem, as in
+ * signed-area accumulation of glyph outlines, Levien 2016).
+ */
+#ifndef GNOI_PROJECT_FILTER_LANES_H
+#define GNOI_PROJECT_FILTER_LANES_H
+
+#define GNOI_LANES 16
+#define GNOI_LANE_COLUMNS 64
+#define GNOI_EVEN_BEND 1e-3f /* |wx| + |wy| below which areas are taken as in proportion */
+
+typedef float gnoi_lane_values[GNOI_LANES];
+
+typedef struct gnoi_lanes {
+    gnoi_lane_values s, t, sx, sy, tx, ty, wx, wy; /* given: as in gnoi_look (filter.h) */
+    int rows[GNOI_LANES];                          /* of cells under the quadrilateral, the first of them next */
+    gnoi_lane_values first_row;
+    gnoi_lane_values x[4], y[4], slope[4];         /* corners; dx/dy of the edge from each to the next */
+    gnoi_lane_values low_x, high_x;
+    int uneven;                                    /* some lane's areas in the picture change with the place, */
+    gnoi_lane_values gain_x, gain_y;               /* by this share of the middle's; 0 where that is negligible */
+} gnoi_lanes;
+
+/* Cells of one row, from column `first` on. Areas are those in the picture, up to a factor of the lane, which may be negative. */
+typedef struct gnoi_lane_row {
+    int columns[GNOI_LANES];
+    gnoi_lane_values first;
+    gnoi_lane_values area[GNOI_LANE_COLUMNS];
+} gnoi_lane_row;
+
+/* Finds corners and rows. All values are finite, sx ty differs from sy tx, |wx| + |wy| < 1. */
+void gnoi_lanes_start(gnoi_lanes *lanes);
+
+/* Row number `row` of every lane; lanes with fewer rows, or a row too wide, get less than they have. */
+void gnoi_lanes_row(const gnoi_lanes *lanes, int row, gnoi_lane_row *out);
+
+#endif
