@@ -6,8 +6,8 @@
 
 #define MOST_BEND 0.03     /* share by which w may change from a look's middle to its border */
 #define MOST_STEEP 0.2     /* and from a pixel's, or it is cut */
-#define FEW_CELLS 64       /* so many elements are weighed without a look at coarser cells */
-#define MANY_CELLS 4000    /* and these rather than being cut */
+#define FEW_CELLS 100       /* so many elements are weighed without a look at coarser cells */
+#define MANY_CELLS 12000   /* and these rather than being cut */
 #define MOST_COLUMNS 60.0  /* of a look */
 #define MOST_ROWS 60.0
 #define MOST_PARTS 64
@@ -39,18 +39,22 @@ typedef struct weighed {
     float value[4], weight;
 } weighed;
 
-/* Solid bytes, all of them within the picture. */
-static void add_bytes(const gnoi_image *image, int column, int row, const gnoi_lane_row *cells, int lane, weighed *sum)
+/* Solid bytes, all of them within the picture: `count` rows, each with as many cells for every lane, for counts that change from
+ * lane to lane cost more than what they spare. */
+static void add_bytes(const gnoi_look *look, const gnoi_lane_row *rows, int count, int row, int lane, weighed *sum)
 {
-    const float *decode = image->decode;
-    unsigned char(*v)[4] = image->bytes + (size_t)row * (size_t)image->width + (size_t)column;
+    const float *decode = look->image->decode;
+    unsigned char(*line)[4] = look->image->bytes + (size_t)row * (size_t)look->image->width;
     float red = sum->value[0], green = sum->value[1], blue = sum->value[2], weight = sum->weight;
-    for (int c = 0; c < cells->columns[lane]; c++) {
-        float area = cells->area[c][lane];
-        red += area * decode[v[c][0]];
-        green += area * decode[v[c][1]];
-        blue += area * decode[v[c][2]];
-        weight += area;
+    for (int r = 0; r < count; r++, line += look->image->width) {
+        unsigned char(*v)[4] = line + look->column + (int)rows[r].first[lane];
+        for (int c = 0; c < rows[r].most; c++) {
+            float area = rows[r].area[c][lane];
+            red += area * decode[v[c][0]];
+            green += area * decode[v[c][1]];
+            blue += area * decode[v[c][2]];
+            weight += area;
+        }
     }
     sum->value[0] = red;
     sum->value[1] = green;
@@ -81,10 +85,12 @@ static void answer(const gnoi_look *look, const weighed *sum)
     look->mean[3] += look->solid ? look->share : k * sum->value[3];
 }
 
+#define ROWS 8 /* at once */
+
 static void answer_together(const gnoi_look *const look[GNOI_LANES], int count)
 {
     gnoi_lanes lanes;
-    gnoi_lane_row cells;
+    gnoi_lane_row cells[ROWS];
     weighed sum[GNOI_LANES];
     int rows = 0;
     for (int i = 0; i < GNOI_LANES; i++) {
@@ -98,17 +104,22 @@ static void answer_together(const gnoi_look *const look[GNOI_LANES], int count)
     gnoi_lanes_start(&lanes);
     for (int i = 0; i < count; i++)
         rows = lanes.rows[i] > rows ? lanes.rows[i] : rows;
-    for (int r = 0; r < rows; r++) {
-        gnoi_lanes_row(&lanes, r, &cells);
+    for (int r0 = 0; r0 < rows; r0 += ROWS) {
+        int n = rows - r0 < ROWS ? rows - r0 : ROWS, most = 0;
+        for (int r = 0; r < n; r++) {
+            gnoi_lanes_row(&lanes, r0 + r, &cells[r]);
+            most = cells[r].most > most ? cells[r].most : most;
+        }
         for (int i = 0; i < count; i++) {
             const gnoi_look *l = look[i];
-            int column = l->column + (int)cells.first[i], row = l->row + (int)lanes.first_row[i] + r;
-            if (r >= lanes.rows[i])
+            int first = l->row + (int)lanes.first_row[i] + r0, m = lanes.rows[i] - r0 < n ? lanes.rows[i] - r0 : n;
+            if (l->solid && first >= 0 && first + m <= l->image->height && l->column + (int)lanes.low_x[i] - 1 >= 0 &&
+                l->column + (int)lanes.high_x[i] + 1 + most <= l->image->width) {
+                add_bytes(l, cells, m, first, i, &sum[i]);
                 continue;
-            if (l->solid && row >= 0 && row < l->image->height && column >= 0 && column + cells.columns[i] <= l->image->width)
-                add_bytes(l->image, column, row, &cells, i, &sum[i]);
-            else
-                add_values(l, column, row, &cells, i, &sum[i]);
+            }
+            for (int r = 0; r < m; r++)
+                add_values(l, l->column + (int)cells[r].first[i], first + r, &cells[r], i, &sum[i]);
         }
     }
     for (int i = 0; i < count; i++)
@@ -153,7 +164,7 @@ typedef struct view {
     double s, t, w, sx, sy, tx, ty, wx, wy;
 } view;
 
-static view view_at(const gnoi_image *image, const gnoi_pattern *p, double x, double y)
+static inline view view_at(const gnoi_image *image, const gnoi_pattern *p, double x, double y)
 {
     double w = gnoi_plane_at(&p->w, x, y), k = 1 / w, s = gnoi_plane_at(&p->s, x, y) * k, t = gnoi_plane_at(&p->t, x, y) * k;
     double across = k * image->width, up = k * image->height;
@@ -185,9 +196,11 @@ static int enlarge(view *v)
     return 1;
 }
 
-static double turn_of(const view *v) { return fabs(v->sx * v->ty - v->sy * v->tx); }
+static inline double cells_of(const view *v) { return (fabs(v->sx) + fabs(v->sy) + 1) * (fabs(v->tx) + fabs(v->ty) + 1); }
 
-static double square_length(const view *v)
+static inline double turn_of(const view *v) { return fabs(v->sx * v->ty - v->sy * v->tx); }
+
+static inline double square_length(const view *v)
 {
     double wide = fabs(v->sx) + fabs(v->sy), high = fabs(v->tx) + fabs(v->ty);
     return wide * wide + high * high;
@@ -221,33 +234,39 @@ static void thicken(view *v)
         v->t = aside(v->t, fabs(v->tx) + fabs(v->ty));
 }
 
-static int is_sound(const view *v)
+static inline int is_sound(const view *v)
 {
     double length = square_length(v);
     return turn_of(v) > LEAST_TURN * length && length > LEAST_LENGTH * LEAST_LENGTH &&
            fabs(v->wx) + fabs(v->wy) < 2.1 * MOST_BEND && fabs(v->s) < FAR_ELEMENTS && fabs(v->t) < FAR_ELEMENTS;
 }
 
-/* A place along one axis brought into the first pattern, or pair of patterns. */
-static double home(double v, int elements, gno_wrap wrap)
+/* Of what lies within int's range. */
+static inline int floor_of(double v)
+{
+    int whole = (int)v;
+    return whole - (v < whole);
+}
+
+/* A place along one axis, less far than FAR_ELEMENTS, brought into the first pattern, or pair of patterns. */
+static inline double home(double v, int elements, gno_wrap wrap)
 {
     double period = wrap == GNO_WRAP_MIRROR ? 2.0 * elements : elements;
     if ((v >= 0 && v < elements) || wrap == GNO_WRAP_CLAMP || wrap == GNO_WRAP_NONE)
         return v;
-    return v - period * floor(v / period);
+    return v - period * floor_of(v / period);
 }
 
-static void add_look(gnoi_looks *looks, const gnoi_image *image, gno_wrap wrap, const view *v, int level, double share, float mean[4])
+static inline void add_look(gnoi_looks *looks, const gnoi_image *image, gno_wrap wrap, const view *v, int level, double share, float mean[4])
 {
     gnoi_look *l = &looks->look[looks->count++];
     double k = 1.0 / (1 << level), s = k * home(v->s, image->width, wrap), t = k * home(v->t, image->height, wrap);
-    double column = floor(s + 0.5), row = floor(t + 0.5);
     l->image = image;
     l->mean = mean;
     l->share = (float)share;
-    l->column = (int)column;
-    l->row = (int)row;
-    l->s = (float)(s - column), l->t = (float)(t - row);
+    l->column = floor_of(s + 0.5);
+    l->row = floor_of(t + 0.5);
+    l->s = (float)(s - l->column), l->t = (float)(t - l->row);
     l->sx = (float)(k * v->sx), l->sy = (float)(k * v->sy);
     l->tx = (float)(k * v->tx), l->ty = (float)(k * v->ty);
     l->wx = (float)v->wx, l->wy = (float)v->wy;
@@ -280,30 +299,33 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
     rows = (int)floor(t + high) - j0 + 1;
     if (!is_on_grid(wrap, i0, columns, image->width, level) || !is_on_grid(wrap, j0, rows, image->height, level))
         return 0;
-    for (int j = 0; j < rows; j++)
+    for (int j = 0; j < rows; j++) {
+        size_t row = (size_t)wrapped(j0 + j, l->height, wrap) * (size_t)l->width;
         for (int i = 0; i < columns; i++) {
-            size_t row = (size_t)wrapped(j0 + j, l->height, wrap), column = (size_t)wrapped(i0 + i, l->width, wrap);
-            float own = l->spread[row * (size_t)l->width + column];
+            float own = l->spread[row + (size_t)wrapped(i0 + i, l->width, wrap)];
             spread = own > spread ? own : spread;
         }
-    return !(spread > 0) || 1.0 / (columns * rows) <= gnoi_filter_most_area(BLOCK_TOLERANCE, spread);
+        if (spread > 0 && 1.0 / (columns * rows) > gnoi_filter_most_area(BLOCK_TOLERANCE, spread))
+            return 0;
+    }
+    return 1;
 }
 
 /* The level whose cells to weigh; -1 where there are too many. */
 static int level_for(const gnoi_image *image, gno_wrap wrap, const view *v)
 {
-    double wide = fabs(v->sx) + fabs(v->sy), high = fabs(v->tx) + fabs(v->ty), cells = (wide + 1) * (high + 1), widest = wide > high ? wide : high;
+    double wide = fabs(v->sx) + fabs(v->sy), high = fabs(v->tx) + fabs(v->ty), widest = wide > high ? wide : high;
     int level = 0;
-    if (cells <= FEW_CELLS)
+    if (cells_of(v) <= FEW_CELLS)
         return 0;
-    if (!(widest < FAR_ELEMENTS))
+    if (!(widest < FAR_ELEMENTS && fabs(v->s) < FAR_ELEMENTS && fabs(v->t) < FAR_ELEMENTS))
         return -1;
     while (level + 1 < image->level_count && widest > (double)(3 << level))
         level++;
     for (; level > 0; level--)
         if (is_fine(image, wrap, v, level))
             return level;
-    return cells <= MANY_CELLS ? 0 : -1;
+    return cells_of(v) <= MANY_CELLS ? 0 : -1;
 }
 
 /* ---- parts ------------------------------------------------------------------------------------------------------------------ */
@@ -390,13 +412,12 @@ static void cut(const gnoi_image *image, gno_wrap wrap, const view *enlarged, co
     gnoi_filter_cut(image, wrap, &s, &t, &w, mean);
 }
 
-void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y,
-                    double xs, double ys, float mean[4])
+/* Whatever the pixel is like. */
+static void ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y, double xs,
+                double ys, float mean[4])
 {
     view v = view_at(image, p, x, y);
     int enlarged = how->filter == GNO_FILTER_LINEAR && v.w > 0 && enlarge(&v), level, across, down;
-    if (looks->count + MOST_PARTS > GNOI_LOOKS)
-        gnoi_looks_answer(looks);
     thicken(&v);
     if (v.w > 0 && (level = level_for(image, how->wrap, &v)) >= 0 && find_parts(&v, level, &across, &down)) {
         mean[0] = mean[1] = mean[2] = mean[3] = 0;
@@ -408,6 +429,20 @@ void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_textur
         }
     }
     cut(image, how->wrap, enlarged ? &v : NULL, p, x, y, xs, ys, mean);
+}
+
+void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y,
+                    double xs, double ys, float mean[4])
+{
+    view v = view_at(image, p, x, y);
+    if (looks->count + MOST_PARTS > GNOI_LOOKS)
+        gnoi_looks_answer(looks);
+    if (v.w > 0 && how->filter == GNO_FILTER_BOX && cells_of(&v) <= FEW_CELLS && is_sound(&v)) {
+        mean[0] = mean[1] = mean[2] = mean[3] = 0;
+        add_look(looks, image, how->wrap, &v, 0, 1, mean);
+    } else {
+        ask(looks, image, how, p, x, y, xs, ys, mean);
+    }
 }
 
 void gnoi_filter_pixel(const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y, double xs, double ys,

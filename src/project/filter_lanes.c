@@ -23,22 +23,32 @@ INLINE float largest(gnoi_lane_values v[4], int i) { return greater(greater(v[0]
 VECTOR_CLONES void gnoi_lanes_start(gnoi_lanes *l)
 {
     static const float across[4] = {-0.5f, 0.5f, 0.5f, -0.5f}, down[4] = {-0.5f, -0.5f, 0.5f, 0.5f};
+    gnoi_lane_values x[4], y[4];
     for (int c = 0; c < 4; c++)
         for (int i = 0; i < GNOI_LANES; i++) {
             float k = 1.0f / (1.0f + l->wx[i] * across[c] + l->wy[i] * down[c]);
-            l->x[c][i] = l->s[i] + (l->sx[i] * across[c] + l->sy[i] * down[c]) * k;
-            l->y[c][i] = l->t[i] + (l->tx[i] * across[c] + l->ty[i] * down[c]) * k;
+            x[c][i] = l->s[i] + (l->sx[i] * across[c] + l->sy[i] * down[c]) * k;
+            y[c][i] = l->t[i] + (l->tx[i] * across[c] + l->ty[i] * down[c]) * k;
         }
     for (int i = 0; i < GNOI_LANES; i++) {
-        l->low_x[i] = least(l->x, i);
-        l->high_x[i] = largest(l->x, i);
-        l->first_row[i] = floor_of(least(l->y, i));
-        l->rows[i] = (int)(floor_of(largest(l->y, i)) - l->first_row[i]) + 1;
+        l->low_x[i] = least(x, i);
+        l->high_x[i] = largest(x, i);
+        l->first_row[i] = floor_of(least(y, i));
+        l->rows[i] = (int)(floor_of(largest(y, i)) - l->first_row[i]) + 1;
     }
     for (int c = 0; c < 4; c++)
         for (int i = 0; i < GNOI_LANES; i++) {
-            float dx = l->x[(c + 1) & 3][i] - l->x[c][i], dy = l->y[(c + 1) & 3][i] - l->y[c][i], level = (float)(fabsf(dy) < LEVEL_EDGE);
+            float x0 = x[c][i], y0 = y[c][i], x1 = x[(c + 1) & 3][i], y1 = y[(c + 1) & 3][i], down_there = (float)(y0 < y1), dx, dy, level;
+            l->turn[c][i] = 2.0f * down_there - 1.0f;
+            l->x[c][i] = down_there * x0 + (1.0f - down_there) * x1;
+            l->y[c][i] = lesser(y0, y1);
+            l->end_y[c][i] = greater(y0, y1);
+            dx = l->turn[c][i] * (x1 - x0);
+            dy = l->end_y[c][i] - l->y[c][i];
+            level = (float)(dy < LEVEL_EDGE);
             l->slope[c][i] = (1.0f - level) * dx / (dy + level);
+            l->rise[c][i] = dy / (fabsf(dx) + 1e-30f);
+            l->rightward[c][i] = (float)(dx > 0.0f);
         }
     /* Areas in the picture go with w^3, which is linear enough over so little. */
     l->uneven = 0;
@@ -52,40 +62,38 @@ VECTOR_CLONES void gnoi_lanes_start(gnoi_lanes *l)
         l->uneven |= l->gain_x[i] != 0 || l->gain_y[i] != 0;
 }
 
-/* What a row leaves of the edges: x of the left and of the right end, the height, signed, and the inverse of the distance of the ends in x;
- * y of the left end, of the middle, and what y changes by from right to left, from t. */
+/* What a row leaves of the edges: x of the left and of the right end, height, y of the left end and of the middle, from t. */
 typedef struct stretches {
-    gnoi_lane_values left[4], right[4], height[4], inverse[4], left_y[4], middle_y[4], rise[4];
+    gnoi_lane_values left[4], right[4], height[4], left_y[4], middle_y[4];
     gnoi_lane_values low, high; /* least and largest x */
 } stretches;
 
-INLINE void cut_edges(const gnoi_lanes *restrict l, int row, stretches *restrict s)
+INLINE void cut_edges(const gnoi_lanes *restrict l, int row, int uneven, stretches *restrict s)
 {
     for (int i = 0; i < GNOI_LANES; i++) {
         s->low[i] = FAR;
         s->high[i] = -FAR;
     }
-    for (int c = 0; c < 4; c++)
+    for (int e = 0; e < 4; e++)
         for (int i = 0; i < GNOI_LANES; i++) {
-            float top = l->first_row[i] + (float)row, x = l->x[c][i], y = l->y[c][i], a, b, off, turned;
-            float ya = within(y, top, top + 1.0f), yb = within(l->y[(c + 1) & 3][i], top, top + 1.0f);
-            a = within(x + (ya - y) * l->slope[c][i], l->low_x[i], l->high_x[i]);
-            b = within(x + (yb - y) * l->slope[c][i], l->low_x[i], l->high_x[i]);
-            s->left[c][i] = lesser(a, b);
-            s->right[c][i] = greater(a, b);
-            s->height[c][i] = yb - ya;
-            s->inverse[c][i] = 1.0f / (fabsf(a - b) + 1e-30f);
-            turned = (float)(a > b);
-            s->left_y[c][i] = (1.0f - turned) * ya + turned * yb - l->t[i];
-            s->middle_y[c][i] = 0.5f * (ya + yb) - l->t[i];
-            s->rise[c][i] = (1.0f - 2.0f * turned) * (ya - yb);
-            off = 2.0f * FAR * (float)(ya == yb);
-            s->low[i] = lesser(s->low[i], s->left[c][i] + off);
-            s->high[i] = greater(s->high[i], s->right[c][i] - off);
+            float top = l->first_row[i] + (float)row, a, b, off;
+            float from = within(l->y[e][i], top, top + 1.0f), to = within(l->end_y[e][i], top, top + 1.0f);
+            a = within(l->x[e][i] + (from - l->y[e][i]) * l->slope[e][i], l->low_x[i], l->high_x[i]);
+            b = within(l->x[e][i] + (to - l->y[e][i]) * l->slope[e][i], l->low_x[i], l->high_x[i]);
+            s->left[e][i] = lesser(a, b);
+            s->right[e][i] = greater(a, b);
+            s->height[e][i] = to - from;
+            if (uneven) {
+                s->left_y[e][i] = l->rightward[e][i] * from + (1.0f - l->rightward[e][i]) * to - l->t[i];
+                s->middle_y[e][i] = 0.5f * (from + to) - l->t[i];
+            }
+            off = 2.0f * FAR * (float)(from == to);
+            s->low[i] = lesser(s->low[i], s->left[e][i] + off);
+            s->high[i] = greater(s->high[i], s->right[e][i] - off);
         }
 }
 
-INLINE int set_columns(const stretches *restrict s, gnoi_lane_row *restrict out)
+INLINE void set_columns(const stretches *restrict s, gnoi_lane_row *restrict out)
 {
     int most = 0;
     for (int i = 0; i < GNOI_LANES; i++) {
@@ -100,42 +108,46 @@ INLINE int set_columns(const stretches *restrict s, gnoi_lane_row *restrict out)
         for (int i = 0; i < GNOI_LANES; i++)
             out->columns[i] = out->columns[i] < most ? out->columns[i] : most;
     }
-    return most;
+    out->most = most;
 }
 
-/* Along a stretch u = max(line - x, 0) runs from `near` to `near` + d at its left end, the second part of it over the share f of the stretch.
- * Left of the line, the area is the sum of heights times the mean of u; uneven, of u (1 + gain at the line) - gain_x u^2 / 2. */
-INLINE void sum_cells(const gnoi_lanes *restrict l, const stretches *restrict s, int columns, int uneven, gnoi_lane_row *restrict out)
+/* Along a stretch u = max(line - x, 0) runs from `near` at its right end to near + d at its left one, the second part of it over so much
+ * of its height. Left of the line, the area is the sum of heights times the mean of u; uneven, of u (1 + gain at the line) - gain_x u^2 / 2. */
+INLINE void sum_cells(const gnoi_lanes *restrict l, const stretches *restrict s, int uneven, gnoi_lane_row *restrict out)
 {
     gnoi_lane_values before;
     for (int i = 0; i < GNOI_LANES; i++)
         before[i] = 0;
-    for (int c = 0; c < columns; c++)
+    for (int c = 0; c < out->most; c++)
         for (int i = 0; i < GNOI_LANES; i++) {
             float line = out->first[i] + (float)(c + 1), sum = 0, gain = 1.0f + l->gain_x[i] * (line - l->s[i]);
             for (int e = 0; e < 4; e++) {
-                float near = greater(line - s->right[e][i], 0.0f), d = greater(line - s->left[e][i], 0.0f) - near, f = d * s->inverse[e][i];
-                float mean = near + 0.5f * d * f;
+                float height = s->height[e][i], wide = greater(line - s->left[e][i], 0.0f), near = greater(line - s->right[e][i], 0.0f);
+                float d = wide - near, over = lesser(wide * l->rise[e][i], height), part = height * near + 0.5f * d * over;
                 if (uneven) {
-                    float square = near * (near + d) + d * d * f * (1.0f / 3.0f);
-                    float by_y = near * s->middle_y[e][i] + f * d * (0.5f * s->left_y[e][i] - f * s->rise[e][i] * (1.0f / 6.0f));
-                    mean = mean * gain + by_y * l->gain_y[i] - 0.5f * square * l->gain_x[i];
+                    float lean = 1.0f - 2.0f * l->rightward[e][i], square = height * near * (near + d) + d * d * over * (1.0f / 3.0f);
+                    float by_y = height * near * s->middle_y[e][i] + over * d * (0.5f * s->left_y[e][i] - over * lean * (1.0f / 6.0f));
+                    part = part * gain + by_y * l->gain_y[i] - 0.5f * square * l->gain_x[i];
                 }
-                sum += s->height[e][i] * mean;
+                sum += l->turn[e][i] * part;
             }
-            out->area[c][i] = sum - before[i];
+            out->area[c][i] = (sum - before[i]) * (float)(c < out->columns[i]);
             before[i] = sum;
         }
 }
 
-VECTOR_CLONES void gnoi_lanes_row(const gnoi_lanes *restrict l, int row, gnoi_lane_row *restrict out)
+INLINE void cover_row(const gnoi_lanes *restrict l, int row, int uneven, gnoi_lane_row *restrict out)
 {
     stretches s;
-    int columns;
-    cut_edges(l, row, &s);
-    columns = set_columns(&s, out);
+    cut_edges(l, row, uneven, &s);
+    set_columns(&s, out);
+    sum_cells(l, &s, uneven, out);
+}
+
+VECTOR_CLONES void gnoi_lanes_row(const gnoi_lanes *restrict l, int row, gnoi_lane_row *restrict out)
+{
     if (l->uneven)
-        sum_cells(l, &s, columns, 1, out);
+        cover_row(l, row, 1, out);
     else
-        sum_cells(l, &s, columns, 0, out);
+        cover_row(l, row, 0, out);
 }

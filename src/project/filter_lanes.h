@@ -10,7 +10,7 @@
 
 #define GNOI_LANES 16
 #define GNOI_LANE_COLUMNS 64
-#define GNOI_EVEN_BEND 1e-3f /* |wx| + |wy| below which areas are taken as in proportion */
+#define GNOI_EVEN_BEND 2e-3f /* |wx| + |wy| below which areas are taken as in proportion */
 
 typedef float gnoi_lane_values[GNOI_LANES];
 
@@ -18,15 +18,17 @@ typedef struct gnoi_lanes {
     gnoi_lane_values s, t, sx, sy, tx, ty, wx, wy; /* given: as in gnoi_look (filter.h) */
     int rows[GNOI_LANES];                          /* of cells under the quadrilateral, the first of them next */
     gnoi_lane_values first_row;
-    gnoi_lane_values x[4], y[4], slope[4];         /* corners; dx/dy of the edge from each to the next */
+    gnoi_lane_values x[4], y[4], end_y[4], turn[4]; /* edges from their upper end; 1 or -1: that is the first one */
+    gnoi_lane_values slope[4], rise[4], rightward[4]; /* dx/dy, |dy/dx|, whether the lower end is the right one */
     gnoi_lane_values low_x, high_x;
     int uneven;                                    /* some lane's areas in the picture change with the place, */
     gnoi_lane_values gain_x, gain_y;               /* by this share of the middle's; 0 where that is negligible */
 } gnoi_lanes;
 
-/* Cells of one row, from column `first` on. Areas are those in the picture, up to a factor of the lane, which may be negative. */
+/* Cells of one row, from column `first` on. Areas are those in the picture, up to a factor of the lane, which may be negative; up to column
+ * `most` they are there in all lanes, 0 in those that have fewer. */
 typedef struct gnoi_lane_row {
-    int columns[GNOI_LANES];
+    int columns[GNOI_LANES], most;
     gnoi_lane_values first;
     gnoi_lane_values area[GNOI_LANE_COLUMNS];
 } gnoi_lane_row;
@@ -34,7 +36,7 @@ typedef struct gnoi_lane_row {
 /* Finds corners and rows. All values are finite, sx ty differs from sy tx, |wx| + |wy| < 1. */
 void gnoi_lanes_start(gnoi_lanes *lanes);
 
-/* Row number `row` of every lane; lanes with fewer rows, or a row too wide, get less than they have. */
+/* Row number `row` of every lane; lanes with fewer rows get none, and a row too wide is cut short. */
 void gnoi_lanes_row(const gnoi_lanes *lanes, int row, gnoi_lane_row *out);
 
 #endif

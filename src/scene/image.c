@@ -127,6 +127,43 @@ static void make_cell(const gnoi_image *image, int l, int x, int y)
     level->spread[at] = widest;
 }
 
+static inline float larger(float a, float b) { return a > b ? a : b; }
+
+/* The same for one with four children of one size. */
+static inline void make_whole_cell(float value[4][4], const float spread[4], float mean[4], float *widest)
+{
+    float far_off[4];
+    for (int k = 0; k < 4; k++)
+        mean[k] = (value[0][k] + value[1][k] + value[2][k] + value[3][k]) * 0.25f;
+    for (int k = 0; k < 4; k++)
+        far_off[k] = larger(larger(fabsf(value[0][k] - mean[k]) + spread[0], fabsf(value[1][k] - mean[k]) + spread[1]),
+                            larger(fabsf(value[2][k] - mean[k]) + spread[2], fabsf(value[3][k] - mean[k]) + spread[3]));
+    *widest = larger(larger(far_off[0], far_off[1]), larger(far_off[2], far_off[3]));
+}
+
+/* The first cells of row y of level l: as many of them as have four children of one size, whose number is returned. */
+static int make_whole_cells(const gnoi_image *image, int l, int y)
+{
+    const gnoi_image_level *level = &image->level[l], *below = &image->level[l - 1];
+    size_t wide = (size_t)below->width, to = (size_t)y * (size_t)level->width, from = 2 * (size_t)y * wide;
+    int count = (y + 1) << l <= image->height ? image->width >> l : 0;
+    for (int x = 0; x < count; x++, to++, from += 2) {
+        float value[4][4], spread[4] = {0, 0, 0, 0};
+        gnoi_image_value(image, l - 1, 2 * x, 2 * y, value[0]);
+        gnoi_image_value(image, l - 1, 2 * x + 1, 2 * y, value[1]);
+        gnoi_image_value(image, l - 1, 2 * x, 2 * y + 1, value[2]);
+        gnoi_image_value(image, l - 1, 2 * x + 1, 2 * y + 1, value[3]);
+        if (below->spread) {
+            spread[0] = below->spread[from];
+            spread[1] = below->spread[from + 1];
+            spread[2] = below->spread[from + wide];
+            spread[3] = below->spread[from + wide + 1];
+        }
+        make_whole_cell(value, spread, level->mean[to], &level->spread[to]);
+    }
+    return count;
+}
+
 gno_status gnoi_image_make(gno_context *context, const gno_pixels *pixels, gnoi_image *image)
 {
     memset(image, 0, sizeof *image);
@@ -140,7 +177,7 @@ gno_status gnoi_image_make(gno_context *context, const gno_pixels *pixels, gnoi_
         copy_floats(pixels, image);
     for (int l = 1; l < image->level_count; l++)
         for (int y = 0; y < image->level[l].height; y++)
-            for (int x = 0; x < image->level[l].width; x++)
+            for (int x = make_whole_cells(image, l, y); x < image->level[l].width; x++)
                 make_cell(image, l, x, y);
     return GNO_OK;
 }
