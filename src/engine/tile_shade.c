@@ -226,7 +226,7 @@ static void set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int col
         n = v3_scale(n, (v3_dot(n, g) < 0 ? -1 : 1) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
     }
     if (job->tones[slot->receiver.poly->material].bumped)
-        n = gnoi_tile_bumped(tile, slot, row, column, x, y, v3_unit(n));
+        n = gnoi_tile_bumped(tile, slot, row, column, x, y, slot->receiver.poly->shading == GNO_SHADING_PHONG ? v3_unit(n) : n);
     b->nx[i] = (float)n.x;
     b->ny[i] = (float)n.y;
     b->nz[i] = (float)n.z;

@@ -21,29 +21,33 @@ typedef struct frame {
 static int find_frame(const gnoi_sight *sight, const gnoi_pattern *p, double x, double y, frame *f)
 {
     const gnoi_view *view = sight->view;
-    double w = gnoi_plane_at(&p->w, x, y), z = gnoi_plane_at(sight->nearness, x, y), sx, sy, tx, ty, det, a, b;
-    vec3 dx = v3_scale(view->right, view->unit), dy = v3_scale(view->up, -view->unit), point = gnoi_view_point(view, x, y, z);
-    f->s = gnoi_plane_at(&p->s, x, y) / w;
-    f->t = gnoi_plane_at(&p->t, x, y) / w;
-    sx = (p->s.fx - f->s * p->w.fx) / w, sy = (p->s.fy - f->s * p->w.fy) / w;
-    tx = (p->t.fx - f->t * p->w.fx) / w, ty = (p->t.fy - f->t * p->w.fy) / w;
-    if (view->orthographic) {
-        dx = v3_mad(dx, view->forward, -sight->nearness->fx);
-        dy = v3_mad(dy, view->forward, -sight->nearness->fy);
-    } else {
-        vec3 ray = v3_sub(point, view->eye);
-        dx = v3_scale(v3_mad(dx, ray, -sight->nearness->fx), 1 / z);
-        dy = v3_scale(v3_mad(dy, ray, -sight->nearness->fy), 1 / z);
-    }
+    const gnoi_screen_plane *nearness = sight->nearness;
+    double w = gnoi_plane_at(&p->w, x, y), z = gnoi_plane_at(nearness, x, y), k = 1 / w, sx, sy, tx, ty, det, a, b;
+    vec3 dx = v3_scale(view->right, view->unit), dy = v3_scale(view->up, -view->unit);
+    f->s = gnoi_plane_at(&p->s, x, y) * k;
+    f->t = gnoi_plane_at(&p->t, x, y) * k;
+    sx = (p->s.fx - f->s * p->w.fx) * k, sy = (p->s.fy - f->s * p->w.fy) * k;
+    tx = (p->t.fx - f->t * p->w.fx) * k, ty = (p->t.fy - f->t * p->w.fy) * k;
     det = sx * ty - sy * tx;
-    a = sqrt(sx * sx + tx * tx);
-    b = sqrt(sy * sy + ty * ty);
-    f->length = a > b ? a : b;
-    if (!(w > 0) || !(z > 0 || view->orthographic) || !(fabs(det) > 1e-12 * f->length * f->length))
+    a = sx * sx + tx * tx;
+    b = sy * sy + ty * ty;
+    a = a > b ? a : b;
+    if (!(w > 0) || !(z > 0 || view->orthographic) || !(fabs(det) > 1e-12 * a))
         return 0;
+    if (view->orthographic) {
+        dx = v3_mad(dx, view->forward, -nearness->fx);
+        dy = v3_mad(dy, view->forward, -nearness->fy);
+        k = 1 / det;
+    } else {
+        vec3 ray = v3_sub(gnoi_view_point(view, x, y, z), view->eye);
+        dx = v3_mad(dx, ray, -nearness->fx);
+        dy = v3_mad(dy, ray, -nearness->fy);
+        k = 1 / (z * det);
+    }
+    f->length = sqrt(a);
     f->width = fabs(det) / f->length;
-    f->qx = v3_scale(v3_sub(v3_scale(dx, ty), v3_scale(dy, tx)), 1 / det);
-    f->qy = v3_scale(v3_sub(v3_scale(dy, sx), v3_scale(dx, sy)), 1 / det);
+    f->qx = v3_scale(v3_sub(v3_scale(dx, ty), v3_scale(dy, tx)), k);
+    f->qy = v3_scale(v3_sub(v3_scale(dy, sx), v3_scale(dx, sy)), k);
     return 1;
 }
 
@@ -61,39 +65,53 @@ static int wrapped(int i, int n, gno_wrap wrap)
     return wrap == GNO_WRAP_MIRROR && copy % 2 != 0 ? n - 1 - i : i;
 }
 
-/* A place along one axis brought into the first two patterns. */
+/* A place along one axis brought into the first pattern, or, mirrored, pair of them. */
 static double home(double v, gno_wrap wrap)
 {
     if (wrap == GNO_WRAP_CLAMP || wrap == GNO_WRAP_NONE)
         return v < -1 ? -1 : v > 2 ? 2 : v;
-    return v - 2 * floor(0.5 * v);
+    if (wrap == GNO_WRAP_MIRROR)
+        return v - 2 * floor(0.5 * v);
+    return v >= 0 && v < 1 ? v : v - floor(v);
+}
+
+/* Of what lies within int's range. */
+static int floor_of(double v)
+{
+    int whole = (int)v;
+    return whole - (v < whole);
 }
 
 /* Derivatives of the bilinear heights of one level, by S and by T, each by a difference one cell wide. */
 static void slope_at(const gnoi_image *image, const gno_texture *how, int level, double s, double t, double slope[2])
 {
     const gnoi_image_level *l = &image->level[level];
-    double x = s * l->width - 1, y = t * l->height - 1, fx = floor(x), fy = floor(y), a = x - fx, b = y - fy;
-    double ha = a < 0.5 ? a + 0.5 : a - 0.5, hb = b < 0.5 ? b + 0.5 : b - 0.5; /* of the middle row and column of interpolation */
-    int ia = a < 0.5 ? 0 : 1, ib = b < 0.5 ? 0 : 1;
-    int i0 = (int)fx, j0 = (int)fy, inside = i0 >= 0 && i0 + 2 < l->width && j0 >= 0 && j0 + 2 < l->height, column[3], row_of[3];
-    float v[3][3];
-    for (int i = 0; i < 3; i++) {
-        column[i] = inside ? i0 + i : wrapped(i0 + i, l->width, how->wrap);
-        row_of[i] = inside ? j0 + i : wrapped(j0 + i, l->height, how->wrap);
+    double x = s * l->width - 1, y = t * l->height - 1;
+    int i0 = floor_of(x), j0 = floor_of(y), column[3];
+    float a = (float)(x - i0), b = (float)(y - j0);
+    int ia = a >= 0.5f, ib = b >= 0.5f; /* the middle row and column of interpolation, */
+    float ha = ia ? a - 0.5f : a + 0.5f, hb = ib ? b - 0.5f : b + 0.5f; /* and the second one's weight */
+    const float *row[3];
+    float by_s[2], by_t[2];
+    if (i0 >= 0 && i0 + 2 < l->width && j0 >= 0 && j0 + 2 < l->height) {
+        for (int i = 0; i < 3; i++) {
+            column[i] = i0 + i;
+            row[i] = l->height_of + (size_t)(j0 + i) * (size_t)l->width;
+        }
+    } else {
+        for (int i = 0; i < 3; i++) {
+            column[i] = wrapped(i0 + i, l->width, how->wrap);
+            row[i] = l->height_of + (size_t)wrapped(j0 + i, l->height, how->wrap) * (size_t)l->width;
+        }
     }
-    for (int j = 0; j < 3; j++) {
-        const float *row = l->height_of + (size_t)row_of[j] * (size_t)l->width;
-        for (int i = 0; i < 3; i++)
-            v[j][i] = row[column[i]];
-    }
-    slope[0] = slope[1] = 0;
     for (int k = 0; k < 2; k++) {
-        double along_t = k ? hb : 1 - hb, along_s = k ? ha : 1 - ha;
-        const float *row = v[ib + k];
-        slope[0] += along_t * ((1 - a) * (double)(row[1] - row[0]) + a * (double)(row[2] - row[1])) * l->width;
-        slope[1] += along_s * ((1 - b) * (double)(v[1][ia + k] - v[0][ia + k]) + b * (double)(v[2][ia + k] - v[1][ia + k])) * l->height;
+        const float *r = row[ib + k];
+        int c = column[ia + k];
+        by_s[k] = (1 - a) * (r[column[1]] - r[column[0]]) + a * (r[column[2]] - r[column[1]]);
+        by_t[k] = (1 - b) * (row[1][c] - row[0][c]) + b * (row[2][c] - row[1][c]);
     }
+    slope[0] = (double)((1 - hb) * by_s[0] + hb * by_s[1]) * l->width;
+    slope[1] = (double)((1 - ha) * by_t[0] + ha * by_t[1]) * l->height;
 }
 
 /* The slope seen by a pixel of the given size, between the two levels whose cells are next to it. */
@@ -122,7 +140,7 @@ static vec3 raise(const gnoi_image *image, const gno_bump *bump, const frame *f,
     double slope[2], size, k;
     vec3 across = v3_cross(f->qx, f->qy);
     slope_of(image, &bump->texture, f, slope);
-    size = sqrt(v3_length(f->qx) * v3_length(f->qy));
+    size = sqrt(sqrt(v3_dot(f->qx, f->qx) * v3_dot(f->qy, f->qy)));
     k = bump->amount * size / v3_dot(across, across);
     n = v3_mad(n, v3_cross(f->qy, across), -k * slope[0]);
     return v3_mad(n, v3_cross(across, f->qx), -k * slope[1]);
