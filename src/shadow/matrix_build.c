@@ -37,16 +37,13 @@ static void sort_columns(gnoi_findings *f)
 }
 
 /* Gives back what growing left over, so that all pieces together hold little more than the matrix. */
-static void trim(gnoi_findings *f)
+static void trim(gno_context *context, void **array, size_t *capacity, size_t count, size_t size)
 {
-    uint32_t *less;
-    if (f->caster_count == f->caster_capacity || f->caster_count == 0)
+    void *less = count < *capacity && count > 0 ? gnoi_realloc(context, *array, *capacity, count, size) : NULL;
+    if (!less)
         return;
-    less = gnoi_realloc(f->context, f->casters, f->caster_capacity, f->caster_count, sizeof *less);
-    if (less) {
-        f->casters = less;
-        f->caster_capacity = f->caster_count;
-    }
+    *array = less;
+    *capacity = count;
 }
 
 static gno_status find_piece(void *user, int worker, size_t piece)
@@ -57,7 +54,8 @@ static gno_status find_piece(void *user, int worker, size_t piece)
     if (!gnoi_search_piece(j->search, piece, &j->scratch[worker], f))
         return GNO_ERROR_MEMORY;
     sort_columns(f);
-    trim(f);
+    trim(f->context, (void **)&f->casters, &f->caster_capacity, f->caster_count, sizeof *f->casters);
+    trim(f->context, (void **)&f->columns, &f->column_capacity, f->column_count, sizeof *f->columns);
     return GNO_OK;
 }
 

@@ -16,7 +16,9 @@
 #define RUN_PACKETS (GNOI_RUN / GNOI_PACKET)
 #define LINE (64 / sizeof(float)) /* numbers in a line of the cache */
 #define SIZE_CLASSES 6
-#define CLASS_FACTOR (1.0f / 16) /* each class holds boxes this many times smaller than the one before */
+#define MAIN_CLASS 2    /* the one that holds as many as can be */
+#define CLASS_OCTAVES 4 /* each class holds boxes 16 times smaller than the one before */
+#define OCTAVES 256     /* binary exponents of single precision */
 #define MOST_BINS (SIZE_CLASSES * 6)
 
 typedef gnoi_packet_entry entry;
@@ -24,8 +26,8 @@ typedef gnoi_packet_entry entry;
 typedef struct chunk {
     size_t count, capacity;
     entry *entries;
-    float u0, u1, v0, v1;
     int all_convex;
+    uint16_t octave[OCTAVES]; /* boxes of each size */
     size_t place[MOST_BINS]; /* first a count, then where the chunk's share of the bin begins */
 } chunk;
 
@@ -35,9 +37,9 @@ typedef struct job {
     gnoi_packets *packets;
     size_t chunk_count;
     chunk *chunks;
-    size_t place_count;
-    entry *places; /* all entries by bin; those of no polygon have GNOI_NONE */
-    float whole;   /* side of the square that holds all boxes */
+    size_t place_count, run_count;
+    entry **runs; /* all entries by bin, GNOI_RUN of them each; those of no polygon have GNOI_NONE. Freed one by one as they become packets */
+    int top;       /* octave of the largest boxes of the main class */
 } job;
 
 static size_t min_size(size_t a, size_t b) { return a < b ? a : b; }
@@ -60,12 +62,13 @@ int gnoi_judge_own_shadow(const gnoi_packet_source *source, const gnoi_poly *pol
 
 /* ---- boxes and bins ---------------------------------------------------------------------------------------------- */
 
-static void chunk_bounds(chunk *c, const gnoi_lbox *box)
+/* The binary exponent of the longer side. */
+static int octave_of(const gnoi_lbox *box)
 {
-    c->u0 = box->u0 < c->u0 ? box->u0 : c->u0;
-    c->u1 = box->u1 > c->u1 ? box->u1 : c->u1;
-    c->v0 = box->v0 < c->v0 ? box->v0 : c->v0;
-    c->v1 = box->v1 > c->v1 ? box->v1 : c->v1;
+    float du = box->u1 - box->u0, dv = box->v1 - box->v0, size = du > dv ? du : dv;
+    uint32_t bits;
+    memcpy(&bits, &size, sizeof bits);
+    return (int)(bits >> 23 & (OCTAVES - 1));
 }
 
 static gno_status find_boxes(void *user, int worker, size_t piece)
@@ -75,8 +78,6 @@ static gno_status find_boxes(void *user, int worker, size_t piece)
     const gnoi_prepared *prep = &j->scene->prepared;
     size_t first = piece * CHUNK, end = min_size(first + CHUNK, prep->poly_count);
     (void)worker;
-    c->u0 = c->v0 = FLT_MAX;
-    c->u1 = c->v1 = -FLT_MAX;
     c->all_convex = 1;
     c->entries = gnoi_malloc(j->scene->context, end - first, sizeof *c->entries);
     if (!c->entries)
@@ -97,22 +98,20 @@ static gno_status find_boxes(void *user, int worker, size_t piece)
             c->entries[c->count].own = own;
             c->entries[c->count].exact = (unsigned char)exact;
             c->entries[c->count++].poly = (uint32_t)i;
-            if (boxes[k].u1 < FLT_MAX)
-                chunk_bounds(c, &boxes[k]);
+            c->octave[octave_of(&boxes[k])]++;
         }
     }
     return GNO_OK;
 }
 
-static uint32_t bin_of(const gnoi_lbox *box, float whole, int faces)
+static uint32_t bin_of(const gnoi_lbox *box, int top, int faces)
 {
-    float du = box->u1 - box->u0, dv = box->v1 - box->v0, size = du > dv ? du : dv, limit = whole * CLASS_FACTOR;
-    uint32_t level = 0, face = 0;
-    for (; level < SIZE_CLASSES - 1 && size < limit; limit *= CLASS_FACTOR)
-        level++;
+    int below = top - octave_of(box), level = below < 0 ? MAIN_CLASS - 1 - (-below - 1) / CLASS_OCTAVES : MAIN_CLASS + below / CLASS_OCTAVES;
+    uint32_t face = 0;
+    level = level < 0 ? 0 : level < SIZE_CLASSES ? level : SIZE_CLASSES - 1;
     if (faces > 1 && box->u1 < FLT_MAX)
         face = (uint32_t)((0.5f * (box->u0 + box->u1)) / (float)GNOI_FACE_STEP + 0.5f);
-    return level * (uint32_t)faces + (face < (uint32_t)faces ? face : 0);
+    return (uint32_t)level * (uint32_t)faces + (face < (uint32_t)faces ? face : 0);
 }
 
 static gno_status count_bins(void *user, int worker, size_t piece)
@@ -121,27 +120,29 @@ static gno_status count_bins(void *user, int worker, size_t piece)
     chunk *c = &j->chunks[piece];
     (void)worker;
     for (size_t i = 0; i < c->count; i++) {
-        c->entries[i].bin = (uint16_t)bin_of(&c->entries[i].box, j->whole, j->packets->frame.faces);
+        c->entries[i].bin = (uint16_t)bin_of(&c->entries[i].box, j->top, j->packets->frame.faces);
         c->place[c->entries[i].bin]++;
     }
     return GNO_OK;
 }
 
-static void find_whole(job *j)
+/* Sets the classes so that no boundary parts boxes of about one size, the many of a scene. */
+static void find_top(job *j)
 {
-    float u0 = FLT_MAX, u1 = -FLT_MAX, v0 = FLT_MAX, v1 = -FLT_MAX;
+    size_t octave[OCTAVES] = {0}, most = 0, held = 0;
     j->packets->all_convex = 1;
     for (size_t i = 0; i < j->chunk_count; i++) {
-        const chunk *c = &j->chunks[i];
-        j->packets->all_convex &= c->all_convex;
-        u0 = c->u0 < u0 ? c->u0 : u0;
-        u1 = c->u1 > u1 ? c->u1 : u1;
-        v0 = c->v0 < v0 ? c->v0 : v0;
-        v1 = c->v1 > v1 ? c->v1 : v1;
+        j->packets->all_convex &= j->chunks[i].all_convex;
+        for (int o = 0; o < OCTAVES; o++)
+            octave[o] += j->chunks[i].octave[o];
     }
-    j->whole = u1 - u0 > v1 - v0 ? u1 - u0 : v1 - v0;
-    if (j->packets->frame.faces > 1)
-        j->whole = 2;
+    for (int o = 0; o < OCTAVES; o++) {
+        held += octave[o] - (o >= CLASS_OCTAVES ? octave[o - CLASS_OCTAVES] : 0);
+        if (held > most) {
+            most = held;
+            j->top = o;
+        }
+    }
 }
 
 /* Entries of a bin begin where their packets, nodes and nodes of nodes begin. */
@@ -173,16 +174,27 @@ static void give_places(job *j)
     j->place_count = round_up(place, GNOI_PACKET);
 }
 
-static gno_status clear_places(void *user, int worker, size_t piece)
+static size_t run_length(const job *j, size_t run) { return min_size(GNOI_RUN, j->place_count - run * GNOI_RUN); }
+
+static gno_status clear_run(void *user, int worker, size_t piece)
 {
     job *j = user;
-    size_t end = min_size((piece + 1) * GNOI_RUN, j->place_count);
+    size_t count = run_length(j, piece);
     (void)worker;
-    for (size_t i = piece * GNOI_RUN; i < end; i++) {
+    j->runs[piece] = gnoi_malloc(j->scene->context, count, sizeof *j->runs[piece]);
+    if (!j->runs[piece])
+        return GNO_ERROR_MEMORY;
+    for (size_t i = 0; i < count; i++) {
         static const entry empty = {{FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX, FLT_MAX, -FLT_MAX}, GNOI_NONE, 0, 0, 0};
-        j->places[i] = empty;
+        j->runs[piece][i] = empty;
     }
     return GNO_OK;
+}
+
+static void free_run(job *j, size_t run)
+{
+    gnoi_free(j->scene->context, j->runs[run], run_length(j, run), sizeof *j->runs[run]);
+    j->runs[run] = NULL;
 }
 
 static gno_status fill_places(void *user, int worker, size_t piece)
@@ -190,8 +202,10 @@ static gno_status fill_places(void *user, int worker, size_t piece)
     job *j = user;
     chunk *c = &j->chunks[piece];
     (void)worker;
-    for (size_t i = 0; i < c->count; i++)
-        j->places[c->place[c->entries[i].bin]++] = c->entries[i];
+    for (size_t i = 0; i < c->count; i++) {
+        size_t place = c->place[c->entries[i].bin]++;
+        j->runs[place / GNOI_RUN][place % GNOI_RUN] = c->entries[i];
+    }
     gnoi_free(j->scene->context, c->entries, c->capacity, sizeof *c->entries);
     c->entries = NULL;
     return GNO_OK;
@@ -299,11 +313,11 @@ static gno_status fill_packets(void *user, int worker, size_t piece)
     gnoi_packets *packets = j->packets;
     gnoi_packet_block *block = &packets->blocks[piece];
     size_t first = piece * RUN_PACKETS, end = min_size(first + RUN_PACKETS, packets->packet_count);
-    const entry *places = j->places + piece * GNOI_RUN;
+    const entry *places = j->runs[piece];
     uint16_t order[GNOI_RUN];
     float *corner;
     (void)worker;
-    split_runs(places, min_size(GNOI_RUN, j->place_count - piece * GNOI_RUN), packets->frame.parallel, order);
+    split_runs(places, run_length(j, piece), packets->frame.parallel, order);
     block->count = count_corners(j, places, order, end - first) + LINE;
     block->corners = gnoi_malloc(j->scene->context, block->count, sizeof *block->corners);
     if (!block->corners)
@@ -317,6 +331,7 @@ static gno_status fill_packets(void *user, int worker, size_t piece)
         }
         corner = fill_packet(j, e, &packets->packets[i], corner);
     }
+    free_run(j, piece);
     return GNO_OK;
 }
 
@@ -355,7 +370,9 @@ static void free_chunks(job *j)
     for (size_t i = 0; j->chunks && i < j->chunk_count; i++)
         gnoi_free(j->scene->context, j->chunks[i].entries, j->chunks[i].capacity, sizeof *j->chunks[i].entries);
     gnoi_free(j->scene->context, j->chunks, j->chunk_count, sizeof *j->chunks);
-    gnoi_free(j->scene->context, j->places, j->place_count, sizeof *j->places);
+    for (size_t i = 0; j->runs && i < j->run_count; i++)
+        free_run(j, i);
+    gnoi_free(j->scene->context, j->runs, j->run_count, sizeof *j->runs);
 }
 
 static gno_status place_polygons(job *j, int threads)
@@ -364,19 +381,18 @@ static gno_status place_polygons(job *j, int threads)
     gnoi_packets *packets = j->packets;
     static const char stage[] = "shadow boxes";
     gno_status status = gnoi_parallel(context, threads, j->chunk_count, stage, find_boxes, j);
-    size_t runs;
     if (status)
         return status;
-    find_whole(j);
+    find_top(j);
     status = gnoi_parallel(context, threads, j->chunk_count, stage, count_bins, j);
     if (status)
         return status;
     give_places(j);
-    j->places = gnoi_malloc(context, j->place_count, sizeof *j->places);
-    if (!j->places)
+    j->run_count = (j->place_count + GNOI_RUN - 1) / GNOI_RUN;
+    j->runs = gnoi_calloc(context, j->run_count, sizeof *j->runs);
+    if (!j->runs)
         return GNO_ERROR_MEMORY;
-    runs = (j->place_count + GNOI_RUN - 1) / GNOI_RUN;
-    status = gnoi_parallel(context, threads, runs, stage, clear_places, j);
+    status = gnoi_parallel(context, threads, j->run_count, stage, clear_run, j);
     if (!status)
         status = gnoi_parallel(context, threads, j->chunk_count, stage, fill_places, j);
     if (status)
@@ -385,12 +401,12 @@ static gno_status place_polygons(job *j, int threads)
     packets->packet_count = j->place_count / GNOI_PACKET;
     plan_levels(packets);
     packets->packets = gnoi_malloc(context, packets->packet_count, sizeof *packets->packets);
-    packets->block_count = runs;
-    packets->blocks = gnoi_calloc(context, runs, sizeof *packets->blocks);
+    packets->block_count = j->run_count;
+    packets->blocks = gnoi_calloc(context, j->run_count, sizeof *packets->blocks);
     packets->nodes = gnoi_malloc(context, packets->node_count, sizeof *packets->nodes);
     if (!packets->packets || !packets->nodes || !packets->blocks)
         return GNO_ERROR_MEMORY;
-    status = gnoi_parallel(context, threads, runs, stage, fill_packets, j);
+    status = gnoi_parallel(context, threads, j->run_count, stage, fill_packets, j);
     if (!status)
         fill_levels(packets);
     return status;
