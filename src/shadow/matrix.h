@@ -29,16 +29,14 @@ typedef struct gnoi_found_column {
     gno_shade shade;
 } gnoi_found_column;
 
-/* A caster of receiver `lane` of a packet. */
-typedef struct gnoi_found_caster {
-    uint32_t caster, lane;
-} gnoi_found_caster;
+#define GNOI_LANE 28
+_Static_assert(GNO_MAX_POLYGONS <= 1 << GNOI_LANE, "a caster and its receiver's lane share a word");
 
 /* What a walk leaves behind for the next one; one for each worker. */
 typedef struct gnoi_search_scratch {
     gnoi_node_list far, near;
     size_t found_count, found_capacity;
-    gnoi_found_caster *found;
+    uint32_t *found; /* casters, with the number of the receiver in its packet in the bits from GNOI_LANE on */
 } gnoi_search_scratch;
 
 void gnoi_search_scratch_free(gno_context *context, gnoi_search_scratch *scratch);

@@ -101,8 +101,7 @@ static int add_found(gno_context *context, gnoi_search_scratch *scratch, uint32_
     if (scratch->found_count == scratch->found_capacity &&
         !gnoi_reserve(context, (void **)&scratch->found, &scratch->found_capacity, scratch->found_count + 1, sizeof *scratch->found))
         return 0;
-    scratch->found[scratch->found_count].caster = caster;
-    scratch->found[scratch->found_count++].lane = lane;
+    scratch->found[scratch->found_count++] = caster | lane << GNOI_LANE;
     return 1;
 }
 
@@ -185,7 +184,7 @@ static int end_targets(const gnoi_search_scratch *scratch, unsigned lanes, unsig
 {
     size_t count[GNOI_PACKET] = {0}, at[GNOI_PACKET], end = f->caster_count;
     for (size_t i = 0; i < scratch->found_count; i++)
-        count[scratch->found[i].lane]++;
+        count[scratch->found[i] >> GNOI_LANE]++;
     if (!gnoi_reserve(f->context, (void **)&f->columns, &f->column_capacity, f->column_count + GNOI_PACKET, sizeof *f->columns) ||
         !gnoi_reserve(f->context, (void **)&f->casters, &f->caster_capacity, f->caster_count + scratch->found_count + GNOI_PACKET, sizeof *f->casters))
         return 0;
@@ -201,7 +200,7 @@ static int end_targets(const gnoi_search_scratch *scratch, unsigned lanes, unsig
         c->shade = shade[k];
     }
     for (size_t i = 0; i < scratch->found_count; i++)
-        f->casters[at[scratch->found[i].lane]++] = scratch->found[i].caster;
+        f->casters[at[scratch->found[i] >> GNOI_LANE]++] = scratch->found[i] & ((1u << GNOI_LANE) - 1);
     f->caster_count = end;
     return 1;
 }
