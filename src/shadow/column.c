@@ -25,7 +25,7 @@ static int compare_numbers(const void *a, const void *b)
 }
 
 /* A receiver on several faces may be given a caster once for each. */
-static void drop_repeats(gnoi_list *list)
+void gnoi_list_drop_repeats(gnoi_list *list)
 {
     size_t n = 0;
     if (list->count > 16) {
@@ -129,18 +129,23 @@ static int settle(const gnoi_receiver *receiver, const gnoi_lamp *lamp, gnoi_col
             sort_into_rows(receiver, columns, rim_rows, column->rim, column->rim_count, &column->rim_rows));
 }
 
-/* One by one: single casters and far sides alike. */
+/* By the boxes of a region in parts. */
 static int settle_apart(const gnoi_pair *p, const gnoi_view *view, const gnoi_casters *casters, const gnoi_lbox *boxes, int count,
                         gnoi_columns *columns, gnoi_column *column)
 {
+    gnoi_near *near = columns->near;
+    gnoi_sheet_state sheet = gnoi_sheet_try_apart(p, casters, boxes, count, columns, column);
     int all = 0;
+    columns->near = near;
     columns->found.count = 0;
+    if (sheet == GNOI_SHEET_NO_MEMORY)
+        return 0;
     for (int i = 0; i < count; i++)
         if (!gnoi_tree_query(columns->context, &casters->single, &boxes[i], NULL, &columns->found) ||
-            !gnoi_tree_query(columns->context, &casters->far, &boxes[i], NULL, &columns->found))
+            (sheet == GNOI_SHEET_PIERCED && !gnoi_tree_query(columns->context, &casters->far, &boxes[i], NULL, &columns->found)))
             return 0;
     if (count > 1)
-        drop_repeats(&columns->found);
+        gnoi_list_drop_repeats(&columns->found);
     return try_found(p, view, columns, &all) && settle(p->receiver, p->lamp, columns, column, all);
 }
 
@@ -227,8 +232,10 @@ static gnoi_lbox box_union(const gnoi_lbox *a, const gnoi_lbox *b)
     return r;
 }
 
-/* A group of up to so many receivers is not halved. */
+/* A group of up to so many receivers is not halved: near far sides, and where there are single casters alone, among which few groups are
+ * without any. */
 #define SMALL_GROUP 4
+#define SMALL_SINGLE_GROUP 16
 
 static gnoi_lbox box_of(const gnoi_columns *columns, const uint16_t *group, size_t count)
 {
@@ -281,7 +288,7 @@ static int settle_group(const gnoi_view *view, const gnoi_casters *casters, gnoi
     gnoi_sheet_state state;
     int good = look_at_group(&columns->requests[group[0]], view, casters, columns, &state);
     int alike = state == GNOI_SHEET_ALL || (state == GNOI_SHEET_NOWHERE && near->single.count == 0);
-    if (good && !alike && count > SMALL_GROUP && near < columns->nears + GNOI_NEAR_DEPTH - 2)
+    if (good && !alike && count > (state == GNOI_SHEET_NOWHERE ? SMALL_SINGLE_GROUP : SMALL_GROUP) && near < columns->nears + GNOI_NEAR_DEPTH - 2)
         return settle_halves(view, casters, columns, group, count);
     if (good && !alike) {
         near[1].box = near->box;
@@ -361,7 +368,7 @@ void gnoi_columns_free(gnoi_columns *columns)
     gnoi_free(columns->context, columns->edges, columns->edge_capacity, sizeof *columns->edges);
     gnoi_free(columns->context, columns->found.items, columns->found.capacity, sizeof *columns->found.items);
     gnoi_free(columns->context, columns->requests, columns->request_capacity, sizeof *columns->requests);
-    for (int i = 0; i < GNOI_NEAR_DEPTH; i++) {
+    for (int i = 0; i <= GNOI_NEAR_DEPTH; i++) {
         gnoi_gathered_free(columns->context, &columns->nears[i].single);
         gnoi_gathered_free(columns->context, &columns->nears[i].far);
         gnoi_gathered_free(columns->context, &columns->nears[i].rim);

@@ -99,7 +99,7 @@ typedef struct gnoi_columns {
     size_t request_count, request_capacity;
     const gno_scene *scene;          /* of those that wait */
     const gnoi_lamp *lamp;
-    gnoi_near nears[GNOI_NEAR_DEPTH], *near; /* of a group and its halves; of the one at hand */
+    gnoi_near nears[GNOI_NEAR_DEPTH + 1], *near; /* of a group and its halves, and one to spare; of the one at hand */
     double asked, ones, full;        /* statistics */
 } gnoi_columns;
 

@@ -50,7 +50,15 @@ struct gnoi_region; /* region.h */
 gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const struct gnoi_region *region,
                                 const gnoi_probe *probe, gnoi_columns *columns, gnoi_column *column);
 
-/* The same where no contour edge and no far side comes near: ALL or NOWHERE, as at this point of the receiver's plane. */
+/* The same of a region that lies on several faces of the frame, or that has no corners there, by its boxes; never ALL. Uses the last of
+ * columns->nears, which columns->near then is. */
+gnoi_sheet_state gnoi_sheet_try_apart(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *boxes, int count,
+                                      gnoi_columns *columns, gnoi_column *column);
+
+/* Each item once, for lists gathered from several boxes. */
+void gnoi_list_drop_repeats(gnoi_list *list);
+
+/* Where no contour edge and no far side comes near: ALL or NOWHERE, as at this point of the receiver's plane. */
 gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, gnoi_columns *columns);
 
 /* Gathers the contour edges of columns->near, unless that was done. Returns 0 when memory fails. */

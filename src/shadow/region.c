@@ -33,34 +33,43 @@ static void box_intersect(gnoi_lbox *a, const gnoi_lbox *b)
     a->u1 = min_f(a->u1, b->u1);
     a->v0 = max_f(a->v0, b->v0);
     a->v1 = min_f(a->v1, b->v1);
+    a->z0 = max_f(a->z0, b->z0);
     a->z1 = min_f(a->z1, b->z1);
+}
+
+static int on_hull(const gnoi_frame *frame, const vec3 *hull, int count, gnoi_region *region)
+{
+    region->count = count;
+    if (!gnoi_frame_locate(frame, hull, count, region->corner))
+        return 0;
+    gnoi_frame_box(frame, region->corner, count, &region->box);
+    return 1;
+}
+
+/* On a plane seen nearly edge on the picture region reaches far beyond the polygon. */
+static int on_corners(const gnoi_frame *frame, const vec3 corners[4], const vec3 *hull, int count, gnoi_region *region)
+{
+    gnoi_lbox boxes[6];
+    region->count = 4;
+    if (!gnoi_frame_locate(frame, corners, 4, region->corner))
+        return 0;
+    gnoi_frame_box(frame, region->corner, 4, &region->box);
+    if (gnoi_frame_boxes(frame, hull, count, boxes) == 1 &&
+        gnoi_frame_face(frame, (double)boxes[0].u0) == gnoi_frame_face(frame, (double)region->box.u0))
+        box_intersect(&region->box, &boxes[0]);
+    return 1;
 }
 
 int gnoi_region_make(const gno_scene *scene, const gnoi_view *view, const gnoi_frame *frame, const gnoi_receiver *r, gnoi_region *region,
                      gnoi_lbox boxes[6], int *box_count)
 {
     vec3 hull[GNOI_FRAME_POINTS], corners[4];
-    int hull_count = gnoi_poly_hull(scene, r->poly, hull);
+    int count = gnoi_poly_hull(scene, r->poly, hull), seen = !r->whole && region_corners(view, r, corners);
     *box_count = 0;
-    region->count = 4;
-    if (r->whole) {
-        region->count = hull_count;
-        if (gnoi_frame_locate(frame, hull, hull_count, region->corner))
-            gnoi_frame_box(frame, region->corner, hull_count, &region->box);
-        else
-            *box_count = gnoi_frame_boxes(frame, hull, hull_count, boxes);
-    } else if (!region_corners(view, r, corners)) {
-        *box_count = gnoi_frame_boxes(frame, hull, hull_count, boxes);
-    } else if (!gnoi_frame_locate(frame, corners, 4, region->corner)) {
-        *box_count = frame->faces == 6 ? gnoi_frame_boxes(frame, corners, 4, boxes) : gnoi_frame_boxes(frame, hull, hull_count, boxes);
-    } else {
-        gnoi_frame_box(frame, region->corner, 4, &region->box);
-        if (frame->faces == 1 && gnoi_frame_boxes(frame, hull, hull_count, boxes) == 1) {
-            box_intersect(&boxes[0], &region->box);
-            region->box = boxes[0];
-        }
-    }
-    return *box_count == 0;
+    if ((seen && on_corners(frame, corners, hull, count, region)) || ((r->whole || count == 3) && on_hull(frame, hull, count, region)))
+        return 1;
+    *box_count = seen && frame->faces == 6 ? gnoi_frame_boxes(frame, corners, 4, boxes) : gnoi_frame_boxes(frame, hull, count, boxes);
+    return 0;
 }
 
 /* The convex region's edges on the light's plane. */

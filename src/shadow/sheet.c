@@ -220,16 +220,21 @@ static gnoi_sheet_state add_rims(const gnoi_pair *p, const gnoi_casters *casters
     return column->sheet ? GNOI_SHEET_PART : GNOI_SHEET_NOWHERE;
 }
 
-/* Looks at the far sides about as deep as the receiver: PIERCED when one passes through it, when one that stands on it may go on
- * below, or when one of its own solid lies on it, as the receiver itself where the solid is inside out; PART when any is
- * overhead. A far side of another solid that lies on the receiver counts as above: it stands on it, and hides it. */
-static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_frame *frame, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_columns *columns)
+/* What the far sides over a region are like. */
+typedef struct outlook {
+    int overhead, standing, hanging;
+} outlook;
+
+/* Looks at the far sides about as deep as the receiver in one box of the region. A far side of another solid that lies on the receiver
+ * counts as above: it stands on it, and hides it. PIERCED when one passes through the receiver, or when one of its own solid lies on
+ * it, as the receiver itself where the solid is inside out. */
+static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_frame *frame, const gnoi_lbox *box, const gnoi_probe *probe,
+                                gnoi_columns *columns, outlook *look)
 {
     const gnoi_prepared *prep = &p->scene->prepared;
     const uint32_t solid = gnoi_solid_of(prep, p->receiver->poly);
-    int overhead = 0, standing = 0, hanging = 0;
     columns->found.count = 0;
-    if (!gnoi_gathered_query(columns->context, &columns->near->far, box, NULL, &columns->found, &overhead))
+    if (!gnoi_gathered_query(columns->context, &columns->near->far, box, NULL, &columns->found, &look->overhead))
         return GNOI_SHEET_NO_MEMORY;
     for (size_t i = 0; i < columns->found.count; i++) {
         const gnoi_poly *poly = &prep->polys[columns->found.items[i]];
@@ -239,28 +244,88 @@ static gnoi_sheet_state look_up(const gnoi_pair *p, const gnoi_frame *frame, con
             continue;
         if (at == THROUGH || (touching == (int)poly->corner_count && gnoi_solid_of(prep, poly) == solid))
             return GNOI_SHEET_PIERCED;
-        overhead |= at == ABOVE;
-        standing |= at == ABOVE && touching > 1;
-        hanging |= at == BEHIND && touching > 1;
+        look->overhead |= at == ABOVE;
+        look->standing |= at == ABOVE && touching > 1;
+        look->hanging |= at == BEHIND && touching > 1;
     }
-    if (standing && hanging)
+    return GNOI_SHEET_PART;
+}
+
+/* PIERCED when what stands on the receiver may go on below; PART when any is overhead. */
+static gnoi_sheet_state judge(const outlook *look)
+{
+    if (look->standing && look->hanging)
         return GNOI_SHEET_PIERCED;
-    return overhead ? GNOI_SHEET_PART : GNOI_SHEET_NOWHERE;
+    return look->overhead ? GNOI_SHEET_PART : GNOI_SHEET_NOWHERE;
+}
+
+static void forget_rims(gnoi_columns *columns, gnoi_column *column)
+{
+    columns->rim_count = column->rim;
+    column->rim_count = 0;
+    column->sheet = 0;
 }
 
 gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_region *region, const gnoi_probe *probe,
                                 gnoi_columns *columns, gnoi_column *column)
 {
-    gnoi_sheet_state state = look_up(p, &casters->far.frame, &region->box, probe, columns);
+    outlook look = {0, 0, 0};
+    gnoi_sheet_state state = look_up(p, &casters->far.frame, &region->box, probe, columns, &look);
+    if (state == GNOI_SHEET_PART)
+        state = judge(&look);
     if (state != GNOI_SHEET_PART)
         return state;
     state = add_rims(p, casters, &region->box, probe, columns, column);
-    if (state == GNOI_SHEET_PIERCED) {
-        columns->rim_count = column->rim;
-        column->rim_count = 0;
-        column->sheet = 0;
-    }
+    if (state == GNOI_SHEET_PIERCED)
+        forget_rims(columns, column);
     return state == GNOI_SHEET_NOWHERE ? gnoi_sheet_at(p, casters, gnoi_region_centre(p, &casters->far.frame, region), columns) : state;
+}
+
+/* All contour edges in the boxes of a region in parts. */
+static gnoi_sheet_state add_rims_apart(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *boxes, int count,
+                                       gnoi_columns *columns, gnoi_column *column)
+{
+    const gnoi_prepared *prep = &p->scene->prepared;
+    columns->found.count = 0;
+    for (int i = 0; i < count; i++)
+        if (!gnoi_tree_query(columns->context, &casters->rim, &boxes[i], NULL, &columns->found))
+            return GNOI_SHEET_NO_MEMORY;
+    gnoi_list_drop_repeats(&columns->found);
+    if (!gnoi_reserve(columns->context, (void **)&columns->rims, &columns->rim_capacity, columns->rim_count + columns->found.count,
+                      sizeof *columns->rims))
+        return GNOI_SHEET_NO_MEMORY;
+    for (size_t i = 0; i < columns->found.count; i++) {
+        const gnoi_boundary_edge *e = &casters->contour.edges[columns->found.items[i]];
+        vec3 ends[2] = {v3_from(prep->positions[e->from]), v3_from(prep->positions[e->to])};
+        place at = edge_place(p, e, ends);
+        if (at == THROUGH || (at == ABOVE && add_rim(p, ends, columns) < 0))
+            return GNOI_SHEET_PIERCED;
+    }
+    column->rim_count = (uint32_t)(columns->rim_count - column->rim);
+    column->sheet = 1;
+    return GNOI_SHEET_PART;
+}
+
+gnoi_sheet_state gnoi_sheet_try_apart(const gnoi_pair *p, const gnoi_casters *casters, const gnoi_lbox *boxes, int count,
+                                      gnoi_columns *columns, gnoi_column *column)
+{
+    const gnoi_grain grain = {-1, 1};
+    gnoi_near *near = columns->near = &columns->nears[GNOI_NEAR_DEPTH];
+    outlook look = {0, 0, 0};
+    gnoi_probe none;
+    gnoi_sheet_state state = GNOI_SHEET_PART;
+    none.edge_count = 0;
+    for (int i = 0; i < count && state == GNOI_SHEET_PART; i++)
+        state = gnoi_gather(columns->context, &casters->far, NULL, &boxes[i], grain, &near->far)
+                    ? look_up(p, &casters->far.frame, &boxes[i], &none, columns, &look)
+                    : GNOI_SHEET_NO_MEMORY;
+    if (state == GNOI_SHEET_PART)
+        state = judge(&look);
+    if (state == GNOI_SHEET_PART)
+        state = add_rims_apart(p, casters, boxes, count, columns, column);
+    if (state == GNOI_SHEET_PIERCED)
+        forget_rims(columns, column);
+    return state;
 }
 
 /* ---- lines ---------------------------------------------------------------------------------------------------------- */
