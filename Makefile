@@ -11,7 +11,7 @@
 #   make install    PREFIX, DESTDIR     make check-tsan     threaded tests under the thread sanitizer
 #   make check-port     the engine with 32 bits and on a big-endian machine, by cross compilers and qemu
 #   make coverage   lines and branches of src/ that the tests reach
-#   make mutation   lines broken on purpose, and the test that catches each      make faults   every allocation made to fail
+#   make mutation   lines broken on purpose, and the test that catches each
 #   make check-headers  the public headers in every C and C++ they promise
 
 # ---- yours to change, here or on the command line ----------------------------------------------------------------
@@ -236,8 +236,9 @@ faults:
 	+@$(SUBMAKE) $(JOBS) BUILD=build/asan CFLAGS='-O1 -g -fno-omit-frame-pointer' \
 	  SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=all' faults-run
 
-faults-run: $(CALL_FAULTS) $(COMMAND_FAULTS) $(BUILD)/gnomon
+faults-run: $(CALL_FAULTS) $(COMMAND_FAULTS) $(BUILD)/gnomon $(BUILD)/tests/robustness/test_faults
 	@BUILD='$(BUILD)' bash tests/faults/faults.sh full
+	@GNOMON_FAULTS=1 $(BUILD)/tests/robustness/test_faults
 
 # Huge counts, coordinates, polygons, piles, lights and pictures: time, peak memory and outcome of each. HOSTILE_CASE: a part of a name.
 .PHONY: hostile
@@ -287,13 +288,9 @@ coverage-run: all tests
 
 # Lines of clip, scan and shadow broken on purpose, one at a time, in a copy of the tree: each has to be caught by a test. MUTATION: a
 # word of the files' names.
-.PHONY: mutation faults
+.PHONY: mutation
 mutation:
 	@CC='$(CC)' bash tests/mutation.sh build/mutation tests/mutations.txt $(MUTATION)
-
-# Every allocation of the engine's calls made to fail, on every kind of scene; make test does a sample of it.
-faults: $(BUILD)/tests/robustness/test_faults
-	@GNOMON_FAULTS=1 $<
 
 # The programs that work on several threads, under the thread sanitizer.
 TSAN_TESTS := $(addprefix $(BUILD)/tests/,unit/test_embedding unit/test_stream unit/test_layers unit/test_threads property/test_determinism)
