@@ -41,7 +41,7 @@ typedef struct weighed {
 
 /* Solid bytes, all of them within the picture: `count` rows, each with as many cells for every lane, for counts that change from
  * lane to lane cost more than what they spare. */
-static void add_bytes(const gnoi_look *look, const gnoi_lane_row *rows, int count, int row, int lane, weighed *sum)
+static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, int count, int row, int lane, weighed *sum)
 {
     const float *decode = look->image->decode;
     unsigned char(*line)[4] = look->image->bytes + (size_t)row * (size_t)look->image->width;
@@ -62,7 +62,7 @@ static void add_bytes(const gnoi_look *look, const gnoi_lane_row *rows, int coun
     sum->weight = weight;
 }
 
-static void add_values(const gnoi_look *look, int column, int row, const gnoi_lane_row *cells, int lane, weighed *sum)
+static void add_values(const gnoi_look *look, int column, int row, const gnoi_filter_lane_row *cells, int lane, weighed *sum)
 {
     const gnoi_image_level *level = &look->image->level[look->level];
     int j = wrapped(row, level->height, (gno_wrap)look->wrap);
@@ -87,13 +87,13 @@ static void answer(const gnoi_look *look, const weighed *sum)
 
 #define ROWS 8 /* at once */
 
-static void answer_together(const gnoi_look *const look[GNOI_LANES], int count)
+static void answer_together(const gnoi_look *const look[GNOI_FILTER_LANES], int count)
 {
-    gnoi_lanes lanes;
-    gnoi_lane_row cells[ROWS];
-    weighed sum[GNOI_LANES];
+    gnoi_filter_lanes lanes;
+    gnoi_filter_lane_row cells[ROWS];
+    weighed sum[GNOI_FILTER_LANES];
     int rows = 0;
-    for (int i = 0; i < GNOI_LANES; i++) {
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
         const gnoi_look *l = look[i < count ? i : 0];
         lanes.s[i] = l->s, lanes.t[i] = l->t;
         lanes.sx[i] = l->sx, lanes.sy[i] = l->sy;
@@ -101,13 +101,13 @@ static void answer_together(const gnoi_look *const look[GNOI_LANES], int count)
         lanes.wx[i] = l->wx, lanes.wy[i] = l->wy;
     }
     memset(sum, 0, sizeof sum);
-    gnoi_lanes_start(&lanes);
+    gnoi_filter_lanes_start(&lanes);
     for (int i = 0; i < count; i++)
         rows = lanes.rows[i] > rows ? lanes.rows[i] : rows;
     for (int r0 = 0; r0 < rows; r0 += ROWS) {
         int n = rows - r0 < ROWS ? rows - r0 : ROWS, most = 0;
         for (int r = 0; r < n; r++) {
-            gnoi_lanes_row(&lanes, r0 + r, &cells[r]);
+            gnoi_filter_lanes_row(&lanes, r0 + r, &cells[r]);
             most = cells[r].most > most ? cells[r].most : most;
         }
         for (int i = 0; i < count; i++) {
@@ -152,8 +152,8 @@ void gnoi_looks_answer(gnoi_looks *looks)
     }
     for (int i = 0; i < looks->count; i++)
         order[end[size[i]]++] = &looks->look[i];
-    for (int i = 0; i < looks->count; i += GNOI_LANES)
-        answer_together(order + i, looks->count - i < GNOI_LANES ? looks->count - i : GNOI_LANES);
+    for (int i = 0; i < looks->count; i += GNOI_FILTER_LANES)
+        answer_together(order + i, looks->count - i < GNOI_FILTER_LANES ? looks->count - i : GNOI_FILTER_LANES);
     looks->count = 0;
 }
 

@@ -17,27 +17,28 @@ INLINE float floor_of(float v)
     return whole - (float)(v < whole);
 }
 
-INLINE float least(gnoi_lane_values v[4], int i) { return lesser(lesser(v[0][i], v[1][i]), lesser(v[2][i], v[3][i])); }
-INLINE float largest(gnoi_lane_values v[4], int i) { return greater(greater(v[0][i], v[1][i]), greater(v[2][i], v[3][i])); }
+INLINE float least(gnoi_filter_lane_values v[4], int i) { return lesser(lesser(v[0][i], v[1][i]), lesser(v[2][i], v[3][i])); }
+INLINE float largest(gnoi_filter_lane_values v[4], int i) { return greater(greater(v[0][i], v[1][i]), greater(v[2][i], v[3][i])); }
 
-VECTOR_CLONES void gnoi_lanes_start(gnoi_lanes *l)
+/* Clones are exported by whatever name they have unless they are static: hence the functions below. */
+VECTOR_CLONES static void start(gnoi_filter_lanes *l)
 {
     static const float across[4] = {-0.5f, 0.5f, 0.5f, -0.5f}, down[4] = {-0.5f, -0.5f, 0.5f, 0.5f};
-    gnoi_lane_values x[4], y[4];
+    gnoi_filter_lane_values x[4], y[4];
     for (int c = 0; c < 4; c++)
-        for (int i = 0; i < GNOI_LANES; i++) {
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
             float k = 1.0f / (1.0f + l->wx[i] * across[c] + l->wy[i] * down[c]);
             x[c][i] = l->s[i] + (l->sx[i] * across[c] + l->sy[i] * down[c]) * k;
             y[c][i] = l->t[i] + (l->tx[i] * across[c] + l->ty[i] * down[c]) * k;
         }
-    for (int i = 0; i < GNOI_LANES; i++) {
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
         l->low_x[i] = least(x, i);
         l->high_x[i] = largest(x, i);
         l->first_row[i] = floor_of(least(y, i));
         l->rows[i] = (int)(floor_of(largest(y, i)) - l->first_row[i]) + 1;
     }
     for (int c = 0; c < 4; c++)
-        for (int i = 0; i < GNOI_LANES; i++) {
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
             float x0 = x[c][i], y0 = y[c][i], x1 = x[(c + 1) & 3][i], y1 = y[(c + 1) & 3][i], down_there = (float)(y0 < y1), dx, dy, level;
             l->turn[c][i] = 2.0f * down_there - 1.0f;
             l->x[c][i] = down_there * x0 + (1.0f - down_there) * x1;
@@ -52,30 +53,30 @@ VECTOR_CLONES void gnoi_lanes_start(gnoi_lanes *l)
         }
     /* Areas in the picture go with w^3, which is linear enough over so little. */
     l->uneven = 0;
-    for (int i = 0; i < GNOI_LANES; i++) {
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
         float bend = fabsf(l->wx[i]) + fabsf(l->wy[i]), uneven = (float)(bend > GNOI_EVEN_BEND);
         float k = 3.0f * uneven / (l->sx[i] * l->ty[i] - l->sy[i] * l->tx[i]);
         l->gain_x[i] = k * (l->wx[i] * l->ty[i] - l->wy[i] * l->tx[i]);
         l->gain_y[i] = k * (l->wy[i] * l->sx[i] - l->wx[i] * l->sy[i]);
     }
-    for (int i = 0; i < GNOI_LANES; i++)
+    for (int i = 0; i < GNOI_FILTER_LANES; i++)
         l->uneven |= l->gain_x[i] != 0 || l->gain_y[i] != 0;
 }
 
 /* What a row leaves of the edges: x of the left and of the right end, height, y of the left end and of the middle, from t. */
 typedef struct stretches {
-    gnoi_lane_values left[4], right[4], height[4], left_y[4], middle_y[4];
-    gnoi_lane_values low, high; /* least and largest x */
+    gnoi_filter_lane_values left[4], right[4], height[4], left_y[4], middle_y[4];
+    gnoi_filter_lane_values low, high; /* least and largest x */
 } stretches;
 
-INLINE void cut_edges(const gnoi_lanes *restrict l, int row, int uneven, stretches *restrict s)
+INLINE void cut_edges(const gnoi_filter_lanes *restrict l, int row, int uneven, stretches *restrict s)
 {
-    for (int i = 0; i < GNOI_LANES; i++) {
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
         s->low[i] = FAR;
         s->high[i] = -FAR;
     }
     for (int e = 0; e < 4; e++)
-        for (int i = 0; i < GNOI_LANES; i++) {
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
             float top = l->first_row[i] + (float)row, a, b, off;
             float from = within(l->y[e][i], top, top + 1.0f), to = within(l->end_y[e][i], top, top + 1.0f);
             a = within(l->x[e][i] + (from - l->y[e][i]) * l->slope[e][i], l->low_x[i], l->high_x[i]);
@@ -93,19 +94,19 @@ INLINE void cut_edges(const gnoi_lanes *restrict l, int row, int uneven, stretch
         }
 }
 
-INLINE void set_columns(const stretches *restrict s, gnoi_lane_row *restrict out)
+INLINE void set_columns(const stretches *restrict s, gnoi_filter_lane_row *restrict out)
 {
     int most = 0;
-    for (int i = 0; i < GNOI_LANES; i++) {
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
         float some = (float)(s->low[i] <= s->high[i]);
         out->first[i] = floor_of(some * s->low[i]);
         out->columns[i] = ((int)(floor_of(some * s->high[i]) - out->first[i]) + 1) * (int)some;
     }
-    for (int i = 0; i < GNOI_LANES; i++)
+    for (int i = 0; i < GNOI_FILTER_LANES; i++)
         most = out->columns[i] > most ? out->columns[i] : most;
     if (most > GNOI_LANE_COLUMNS) {
         most = GNOI_LANE_COLUMNS;
-        for (int i = 0; i < GNOI_LANES; i++)
+        for (int i = 0; i < GNOI_FILTER_LANES; i++)
             out->columns[i] = out->columns[i] < most ? out->columns[i] : most;
     }
     out->most = most;
@@ -113,13 +114,13 @@ INLINE void set_columns(const stretches *restrict s, gnoi_lane_row *restrict out
 
 /* Along a stretch u = max(line - x, 0) runs from `near` at its right end to near + d at its left one, the second part of it over so much
  * of its height. Left of the line, the area is the sum of heights times the mean of u; uneven, of u (1 + gain at the line) - gain_x u^2 / 2. */
-INLINE void sum_cells(const gnoi_lanes *restrict l, const stretches *restrict s, int uneven, gnoi_lane_row *restrict out)
+INLINE void sum_cells(const gnoi_filter_lanes *restrict l, const stretches *restrict s, int uneven, gnoi_filter_lane_row *restrict out)
 {
-    gnoi_lane_values before;
-    for (int i = 0; i < GNOI_LANES; i++)
+    gnoi_filter_lane_values before;
+    for (int i = 0; i < GNOI_FILTER_LANES; i++)
         before[i] = 0;
     for (int c = 0; c < out->most; c++)
-        for (int i = 0; i < GNOI_LANES; i++) {
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
             float line = out->first[i] + (float)(c + 1), sum = 0, gain = 1.0f + l->gain_x[i] * (line - l->s[i]);
             for (int e = 0; e < 4; e++) {
                 float height = s->height[e][i], wide = greater(line - s->left[e][i], 0.0f), near = greater(line - s->right[e][i], 0.0f);
@@ -136,7 +137,7 @@ INLINE void sum_cells(const gnoi_lanes *restrict l, const stretches *restrict s,
         }
 }
 
-INLINE void cover_row(const gnoi_lanes *restrict l, int row, int uneven, gnoi_lane_row *restrict out)
+INLINE void cover_row(const gnoi_filter_lanes *restrict l, int row, int uneven, gnoi_filter_lane_row *restrict out)
 {
     stretches s;
     cut_edges(l, row, uneven, &s);
@@ -144,10 +145,20 @@ INLINE void cover_row(const gnoi_lanes *restrict l, int row, int uneven, gnoi_la
     sum_cells(l, &s, uneven, out);
 }
 
-VECTOR_CLONES void gnoi_lanes_row(const gnoi_lanes *restrict l, int row, gnoi_lane_row *restrict out)
+VECTOR_CLONES static void row_of(const gnoi_filter_lanes *restrict l, int row, gnoi_filter_lane_row *restrict out)
 {
     if (l->uneven)
         cover_row(l, row, 1, out);
     else
         cover_row(l, row, 0, out);
+}
+
+void gnoi_filter_lanes_start(gnoi_filter_lanes *l)
+{
+    start(l);
+}
+
+void gnoi_filter_lanes_row(const gnoi_filter_lanes *restrict l, int row, gnoi_filter_lane_row *restrict out)
+{
+    row_of(l, row, out);
 }

@@ -8,35 +8,35 @@
 #ifndef GNOI_PROJECT_FILTER_LANES_H
 #define GNOI_PROJECT_FILTER_LANES_H
 
-#define GNOI_LANES 16
+#define GNOI_FILTER_LANES 16
 #define GNOI_LANE_COLUMNS 64
 #define GNOI_EVEN_BEND 2e-3f /* |wx| + |wy| below which areas are taken as in proportion */
 
-typedef float gnoi_lane_values[GNOI_LANES];
+typedef float gnoi_filter_lane_values[GNOI_FILTER_LANES];
 
-typedef struct gnoi_lanes {
-    gnoi_lane_values s, t, sx, sy, tx, ty, wx, wy; /* given: as in gnoi_look (filter.h) */
-    int rows[GNOI_LANES];                          /* of cells under the quadrilateral, the first of them next */
-    gnoi_lane_values first_row;
-    gnoi_lane_values x[4], y[4], end_y[4], turn[4]; /* edges from their upper end; 1 or -1: that is the first one */
-    gnoi_lane_values slope[4], rise[4], rightward[4]; /* dx/dy, |dy/dx|, whether the lower end is the right one */
-    gnoi_lane_values low_x, high_x;
+typedef struct gnoi_filter_lanes {
+    gnoi_filter_lane_values s, t, sx, sy, tx, ty, wx, wy; /* given: as in gnoi_look (filter.h) */
+    int rows[GNOI_FILTER_LANES];                          /* of cells under the quadrilateral, the first of them next */
+    gnoi_filter_lane_values first_row;
+    gnoi_filter_lane_values x[4], y[4], end_y[4], turn[4]; /* edges from their upper end; 1 or -1: that is the first one */
+    gnoi_filter_lane_values slope[4], rise[4], rightward[4]; /* dx/dy, |dy/dx|, whether the lower end is the right one */
+    gnoi_filter_lane_values low_x, high_x;
     int uneven;                                    /* some lane's areas in the picture change with the place, */
-    gnoi_lane_values gain_x, gain_y;               /* by this share of the middle's; 0 where that is negligible */
-} gnoi_lanes;
+    gnoi_filter_lane_values gain_x, gain_y;               /* by this share of the middle's; 0 where that is negligible */
+} gnoi_filter_lanes;
 
 /* Cells of one row, from column `first` on. Areas are those in the picture, up to a factor of the lane, which may be negative; up to column
  * `most` they are there in all lanes, 0 in those that have fewer. */
-typedef struct gnoi_lane_row {
-    int columns[GNOI_LANES], most;
-    gnoi_lane_values first;
-    gnoi_lane_values area[GNOI_LANE_COLUMNS];
-} gnoi_lane_row;
+typedef struct gnoi_filter_lane_row {
+    int columns[GNOI_FILTER_LANES], most;
+    gnoi_filter_lane_values first;
+    gnoi_filter_lane_values area[GNOI_LANE_COLUMNS];
+} gnoi_filter_lane_row;
 
 /* Finds corners and rows. All values are finite, sx ty differs from sy tx, |wx| + |wy| < 1. */
-void gnoi_lanes_start(gnoi_lanes *lanes);
+void gnoi_filter_lanes_start(gnoi_filter_lanes *lanes);
 
 /* Row number `row` of every lane; lanes with fewer rows get none, and a row too wide is cut short. */
-void gnoi_lanes_row(const gnoi_lanes *lanes, int row, gnoi_lane_row *out);
+void gnoi_filter_lanes_row(const gnoi_filter_lanes *lanes, int row, gnoi_filter_lane_row *out);
 
 #endif

@@ -8,7 +8,7 @@ build=$(cd "${BUILD:-build}" && pwd)
 calls=$build/tests/faults/call_faults commands=$build/tests/faults/command_faults gnomon=$build/gnomon
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-cp "$root"/scenes/house.yaml "$root"/scenes/*.obj "$root"/scenes/*.mtl "$work"
+cp "$root"/scenes/house.yaml "$root"/scenes/town.yaml "$root"/scenes/*.obj "$root"/scenes/*.mtl "$work"
 cp -r "$root"/scenes/textures "$work"
 cd "$work" || exit 1
 case ${1:-quick} in
@@ -133,7 +133,7 @@ if command -v mkfifo >/dev/null && command -v timeout >/dev/null; then
     for i in $(seq 900); do
         echo "  - {polygon: [[$i,0,0],[$i.5,0,0],[$i.5,1,0.3]]}"
     done >>many.yaml
-    stuck=('render many.yaml --size 300x300 -o pipe.pfm' 'lit many.yaml -q -o pipe.csv' 'matrix many.yaml -o pipe.png'
+    stuck=('render many.yaml --size 300x300 -o pipe.pfm' 'lit many.yaml -q -o pipe.csv' 'matrix town.yaml -o pipe.csv'
         'vector house.yaml -o pipe.svg' 'lit many.yaml -q -o rest.csv --pieces pipe.obj')
     for i in "${!stuck[@]}"; do
         ( # all at once: each waits for its signal
