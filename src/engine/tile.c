@@ -1,5 +1,7 @@
 /* tile.c -- one tile: base lines everywhere, more lines where the picture varies: see tile.h. */
+#include "base/vector.h"
 #include "engine/tile.h"
+#include <math.h>
 #include <string.h>
 
 /* Marked runs of a row nearer than this many pixels are taken as one. */
@@ -109,38 +111,55 @@ static void add_base_lines(gnoi_tile *tile)
         add_strip(tile, 0, 0, tile->width, base);
 }
 
-/* Whether the colour of pixel i bends from line to line by more than the def allows: where it changes evenly the lines'
- * mean is right already. The lines next to the pixel's own, above and below, take part. */
-static int bends(const gnoi_tile *tile, int i)
+/* The largest bend, from three lines to the next, of one channel's values a, b, c of three lines. */
+VECTOR_CLONES static void add_bends(const float *restrict a, const float *restrict b, const float *restrict c, float *restrict largest)
 {
-    int n = tile->job->def.base_lines;
-    float limit = (float)tile->job->def.refine_above;
+    for (int x = 0; x < GNOI_TILE_W; x++) {
+        float bend = fabsf(a[x] - 2 * b[x] + c[x]);
+        largest[x] = bend > largest[x] ? bend : largest[x];
+    }
+}
+
+/* Marks the pixels of a row whose colour bends from line to line by more than the def allows: where it changes evenly the lines'
+ * mean is right already. The lines next to the pixel's own, above and below, take part. */
+static void mark_bends(const gnoi_tile *tile, int row, unsigned char need[GNOI_TILE_W])
+{
+    int n = tile->job->def.base_lines, i = row * GNOI_TILE_W;
+    float limit = (float)tile->job->def.refine_above, largest[GNOI_TILE_W] = {0};
     for (int k = 0; k < 3; k++) {
-        float a = tile->line_acc[n - 1][k][i - GNOI_TILE_W], b = tile->line_acc[0][k][i];
+        const float *a = &tile->line_acc[n - 1][k][i - GNOI_TILE_W], *b = &tile->line_acc[0][k][i];
         for (int l = 1; l <= n; l++) {
-            float c = l < n ? tile->line_acc[l][k][i] : tile->line_acc[0][k][i + GNOI_TILE_W];
-            if (fabsf(a - 2 * b + c) > limit)
-                return 1;
+            const float *c = l < n ? &tile->line_acc[l][k][i] : &tile->line_acc[0][k][i + GNOI_TILE_W];
+            add_bends(a, b, c, largest);
             a = b;
             b = c;
         }
     }
-    return 0;
+    for (int x = 0; x < GNOI_TILE_W; x++)
+        need[x] = tile->thin[i + x] || largest[x] > limit;
 }
+
+static void mark_for_layers(const gnoi_tile *tile, int row, unsigned char need[GNOI_TILE_W])
+{
+    for (int x = 0; x < tile->width; x++)
+        need[x] = (unsigned char)gnoi_tile_layers_need(tile, row * GNOI_TILE_W + x);
+}
+
+/* Marks which pixels of a row need all lines. */
+typedef void (*mark_needs)(const gnoi_tile *tile, int row, unsigned char need[GNOI_TILE_W]);
 
 typedef struct run {
     int first, last;
 } run;
 
-static int needs_lines(const gnoi_tile *tile, int i) { return tile->thin[i] || bends(tile, i); }
-
 /* Runs of pixels of a row that need all lines; returns how many. */
-static int find_runs(const gnoi_tile *tile, int row, int (*need)(const gnoi_tile *tile, int i), int gap, run runs[GNOI_TILE_W])
+static int find_runs(const gnoi_tile *tile, int row, mark_needs mark, int gap, run runs[GNOI_TILE_W])
 {
+    unsigned char need[GNOI_TILE_W];
     int n = 0;
+    mark(tile, row, need);
     for (int x = 0; x < tile->width; x++) {
-        int i = row * GNOI_TILE_W + x;
-        if (!need(tile, i))
+        if (!need[x])
             continue;
         if (n == 0 || x - runs[n - 1].last > gap)
             runs[n++].first = x;
@@ -166,7 +185,7 @@ static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_co
 }
 
 /* Adds lines where they are needed; returns 0 when they are nowhere. gap: as RUN_GAP. */
-static int plan_refinement(gnoi_tile *tile, int (*need)(const gnoi_tile *tile, int i), int gap)
+static int plan_refinement(gnoi_tile *tile, mark_needs mark, int gap)
 {
     gnoi_lines_reset(&tile->lines);
     tile->strip_count = 0;
@@ -175,23 +194,34 @@ static int plan_refinement(gnoi_tile *tile, int (*need)(const gnoi_tile *tile, i
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
         tile->row_strip[row] = tile->strip_count;
         if (row > 0 && row <= tile->height)
-            add_fine_lines(tile, row, runs, find_runs(tile, row, need, gap, runs));
+            add_fine_lines(tile, row, runs, find_runs(tile, row, mark, gap, runs));
         tile->row_strip_end[row] = tile->strip_count;
     }
     tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
     return tile->lines.line_count > 0;
 }
 
+VECTOR_CLONES static void divide(const float *restrict sum, const float *restrict weight, float *restrict mean)
+{
+    for (int x = 0; x < GNOI_TILE_W; x++)
+        mean[x] = sum[x] / weight[x];
+}
+
 void gnoi_tile_write(const gnoi_tile *tile)
 {
     const gnoi_frame_job *job = tile->job;
+    float weight[GNOI_TILE_W], mean[3][GNOI_TILE_W];
+    for (int x = 0; x < GNOI_TILE_W; x++)
+        weight[x] = 1; /* beyond the tile's width nothing is weighed */
     for (int y = 0; y < tile->height; y++) {
         float *out = job->rgb + 3 * ((size_t)(tile->y0 + y - job->first_row) * (size_t)job->view.width + (size_t)tile->x0);
-        for (int x = 0; x < tile->width; x++) {
-            int i = (y + 1) * GNOI_TILE_W + x;
+        const int i = (y + 1) * GNOI_TILE_W;
+        memcpy(weight, tile->weight + i, (size_t)tile->width * sizeof *weight);
+        for (int k = 0; k < 3; k++)
+            divide(tile->acc[k] + i, weight, mean[k]);
+        for (int x = 0; x < tile->width; x++)
             for (int k = 0; k < 3; k++)
-                *out++ = tile->acc[k][i] / tile->weight[i];
-        }
+                *out++ = mean[k][x];
     }
 }
 
@@ -209,7 +239,7 @@ static void make_rows(gnoi_tile *tile)
 static void make_layers(gnoi_tile *tile, size_t count)
 {
     tile->fragments.alone = 1;
-    if (tile->job->def.lines > tile->job->def.base_lines && plan_refinement(tile, gnoi_tile_layers_need, 1)) {
+    if (tile->job->def.lines > tile->job->def.base_lines && plan_refinement(tile, mark_for_layers, 1)) {
         gnoi_tile_draw(tile, count);
         make_rows(tile);
     }
@@ -248,7 +278,7 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
     gnoi_tile_draw(tile, count);
     make_rows(tile);
     tile->judging = 0;
-    if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile, needs_lines, RUN_GAP)) {
+    if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile, mark_bends, RUN_GAP)) {
         gnoi_tile_draw(tile, count);
         make_rows(tile);
     }

@@ -21,10 +21,10 @@ gno_status gnoi_picture_pfm(const gnoi_picture *picture, gnoi_file *file)
     gnoi_file_write(file, head, (size_t)length);
     for (int y = picture->height - 1; y >= 0 && gnoi_file_go_on(file, 1 - (y + 1.0) / picture->height); y--) {
         const float *source = gnoi_picture_row(picture, y);
-        for (size_t i = 0; i < values; i++) {
+        for (size_t i = 0; i < values && picture->exposure != 1; i++) {
             row[i] = (float)(source[i] * picture->exposure);
         }
-        gnoi_file_write(file, row, bytes);
+        gnoi_file_write(file, picture->exposure != 1 ? row : source, bytes);
     }
     gno_context_realloc(file->context, row, bytes, 0);
     return GNO_OK;
