@@ -4,6 +4,7 @@
  * or to be split (gno_span_split). A pixel then gives one sample of the surface, weighted by its coverage, and one more
  * for each lamp that reaches only a part of it, taken in the middle of that part.
  */
+#include "base/vector.h"
 #include "engine/tile.h"
 #include <string.h>
 
@@ -272,33 +273,46 @@ static size_t chain_pieces(gnoi_tile *tile, int row)
     return count;
 }
 
+/* What a line leaves free of pixels, times a value. */
+VECTOR_CLONES static void add_free(float *restrict to, const float *restrict covered, int count, float value)
+{
+    for (int p = 0; p < count; p++)
+        to[p] += (1 - covered[p]) * value;
+}
+
+VECTOR_CLONES static void add_positive(float *restrict to, const float *restrict share, int count, float value)
+{
+    for (int p = 0; p < count; p++)
+        to[p] += share[p] > 0 ? share[p] * value : 0;
+}
+
 /* What the row's lines leave free shows the background. */
 static void add_background(gnoi_tile *tile, int row)
 {
     const double *background = tile->job->scene->image.background;
-    float due[GNOI_TILE_W] = {0};
+    float due[GNOI_TILE_W] = {0}, rest[GNOI_TILE_W];
+    const int index = row * GNOI_TILE_W;
     if (tile->veiled) {
         gnoi_tile_veiled_background(tile, row);
         return;
     }
     for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++) {
         const gnoi_line *l = &tile->lines.lines[line];
-        for (int p = l->xa / GNOI_X_ONE; p < l->xb / GNOI_X_ONE; p++) {
+        const int first = l->xa / GNOI_X_ONE, count = l->xb / GNOI_X_ONE - first;
+        for (int p = first; p < first + count; p++)
             due[p] += 1;
-            if (!tile->judging)
-                continue;
-            int i = gnoi_tile_base_line(tile, row, line);
-            for (int k = 0; k < 3; k++)
-                tile->line_acc[i][k][row * GNOI_TILE_W + p] += (1 - tile->row_by_line[i][p]) * (float)background[k];
-        }
+        if (!tile->judging)
+            continue;
+        int i = gnoi_tile_base_line(tile, row, line);
+        for (int k = 0; k < 3; k++)
+            add_free(&tile->line_acc[i][k][index + first], &tile->row_by_line[i][first], count, (float)background[k]);
     }
     for (int p = 0; p < tile->width; p++) {
-        int index = row * GNOI_TILE_W + p;
-        float free_cover = due[p] - tile->row_cover[p];
-        tile->weight[index] += due[p];
-        for (int k = 0; k < 3 && free_cover > 0; k++)
-            tile->acc[k][index] += free_cover * (float)background[k];
+        rest[p] = due[p] - tile->row_cover[p];
+        tile->weight[index + p] += due[p];
     }
+    for (int k = 0; k < 3; k++)
+        add_positive(&tile->acc[k][index], rest, tile->width, (float)background[k]);
 }
 
 void gnoi_tile_row(gnoi_tile *tile, int row)
