@@ -56,7 +56,8 @@ int parse_bytes(const char *text, size_t *value);
 /* The words for --memory in every command's help. */
 #define MEMORY_HELP                                                          \
     "stop with a message before more than SIZE bytes are held, e.g. 512M\n" \
-    "or 2G (what the file libraries take for themselves is not counted)"
+    "or 2G; default: the machine's memory (what the file libraries take\n" \
+    "for themselves is not counted)"
 
 /* KEY=VALUE, cut in place at the first equals sign; the setting points into the text. */
 int parse_setting(char *text, gno_setting *setting);

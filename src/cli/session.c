@@ -5,6 +5,7 @@
 #include "cli/options.h"
 #include "cli/outputs.h"
 
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -50,6 +51,13 @@ int take_common(scene_wish *wish, const char *command_name, const char *option_n
 
 /* ---- the session --------------------------------------------------------------------------------------------------------------- */
 
+/* Bytes, 0 when not known: the ceiling without a wish, so that a message comes before the system ends the program. */
+static size_t machine_memory(void)
+{
+    const double size = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    return size > 0 && size < (double)SIZE_MAX ? (size_t)size : 0;
+}
+
 void session_begin(session *s, const scene_wish *wish)
 {
     memset(s, 0, sizeof *s);
@@ -57,7 +65,7 @@ void session_begin(session *s, const scene_wish *wish)
     s->begun = seconds_now();
     s->shown = progress_make(wish->quiet);
     s->def = progress_context_def(&s->shown);
-    s->def.max_memory = wish->memory;
+    s->def.max_memory = wish->memory > 0 ? wish->memory : machine_memory();
 }
 
 int session_load(session *s)

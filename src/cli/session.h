@@ -15,7 +15,7 @@ typedef struct scene_wish {
     size_t setting_count;
     int width, height; /* 0: the scene's */
     int threads;       /* 0: one per processor */
-    size_t memory;     /* ceiling, 0: none */
+    size_t memory;     /* ceiling, 0: what the machine has */
     int quiet;
 } scene_wish;
 

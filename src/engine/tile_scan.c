@@ -5,6 +5,7 @@
  */
 #include "base/fetch.h"
 #include "engine/tile.h"
+#include "engine/tile_crowd.h"
 
 /* Rounding of a position in the picture relative to the tile in single precision, in pixels, generously: where items reach
  * far out of the picture they are not judged by it closely anyway. */
@@ -271,10 +272,11 @@ static inline void draw_segment(gnoi_tile *tile, const gnoi_item *item, uint32_t
         set_bar(tile, line);
 }
 
-static void draw_polygon_line(gnoi_tile *tile, const gnoi_item *item, uint32_t line)
+/* crowd: NULL for a polygon of few edges. */
+static void draw_polygon_line(gnoi_tile *tile, const gnoi_item *item, uint32_t line, gnoi_crowd *crowd)
 {
-    double *x = tile->crossings;
-    unsigned n = gnoi_edges_cross(tile->edges, (unsigned)tile->edge_count, tile->line_y[line], x);
+    double y = tile->line_y[line], *x = tile->crossings;
+    unsigned n = crowd ? gnoi_crowd_cross(crowd, y, x) : gnoi_edges_cross(tile->edges, (unsigned)tile->edge_count, y, x);
     for (unsigned i = 0; i + 1 < n; i += 2) {
         int32_t x0 = gnoi_lane_position(x[i], tile->x0, GNOI_TILE_MOST), x1 = gnoi_lane_position(x[i + 1], tile->x0, GNOI_TILE_MOST);
         if (x0 < x1)
@@ -305,6 +307,7 @@ static uint32_t polygon_slot(gnoi_tile *tile, uint32_t index)
 
 static void draw_polygon(gnoi_tile *tile, gnoi_item *item, int strip, int strip_end)
 {
+    gnoi_crowd many, *crowd = NULL;
     float bound;
     set_polygon(tile, &tile->job->scene->prepared.polys[item->poly]);
     if (tile->edge_count == 0)
@@ -314,11 +317,15 @@ static void draw_polygon(gnoi_tile *tile, gnoi_item *item, int strip, int strip_
     if (item->slot == GNOI_NONE)
         return;
     bound = tile->lines.depths[item->slot].surely_before;
+    if (tile->edge_count > GNOI_CROWD) {
+        many = gnoi_crowd_make(tile->edges, tile->edge_count, tile->y0 - 1, tile->y0 + tile->height + 1);
+        crowd = &many;
+    }
     for (int s = strip; s < strip_end; s++) {
         uint32_t line, end;
         for (line_range(&tile->strips[s], item, &line, &end); line < end; line++)
             if (!(tile->bar[line] > bound))
-                draw_polygon_line(tile, item, line);
+                draw_polygon_line(tile, item, line, crowd);
     }
 }
 

@@ -4,7 +4,8 @@
  * The rings become one ring of nodes: the outer one counter-clockwise, every hole clockwise and joined to it by a bridge that is
  * walked both ways. Then ears are clipped: convex nodes whose triangle holds no other reflex node.
  * Invariants: the ring loses one node a triangle, so exactly nodes - 2 triangles come out whatever the input; a node's
- * status is looked at again only when a neighbour goes, which bounds the work by n^2 on any input. Where no ear is
+ * status is looked at again only when a neighbour goes, which bounds the work by n^2 on any input; a lattice over the nodes of
+ * large rings keeps it near n on all but such as are made for it. Where no ear is
  * left (rings that cross or touch themselves), the least harmful node is clipped regardless.
  * Source: ear clipping after Meisters 1975 and O'Rourke, Computational Geometry in C, 1.3; bridges to the rightmost visible
  * point after Eberly, Triangulation by Ear Clipping, 2002.
@@ -12,11 +13,14 @@
 #include "scene/scene.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #define LOCAL_NODES 32 /* polygons of up to this many nodes need no memory from the context */
 #define RESCANS 8      /* times that a ring without ears is searched anew before nodes are clipped regardless */
 
 #define MOST_WORK 65536
+#define MANY_NODES 512 /* from so many on a lattice finds those near an ear */
+#define MOST_CELLS 1024 /* of it along an axis */
 
 typedef struct node {
     double u, v;
@@ -26,8 +30,17 @@ typedef struct node {
     unsigned char ear, gone;
 } node;
 
+/* The nodes of the ring by place; made anew whenever half of them have gone. */
+typedef struct lattice {
+    uint32_t *start, *items;  /* nodes of cell k: items[start[k]] .. items[start[k + 1] - 1] */
+    size_t start_room, item_room;
+    uint32_t side, made_of;   /* cells along an axis, 0: none in use; nodes */
+    double low[2], per_unit[2];
+} lattice;
+
 typedef struct clipper {
     gno_context *context;
+    lattice places;
     size_t work;  /* nodes looked at since the last question whether to stop */
     int stopped;
     const double (*positions)[3];
@@ -247,17 +260,108 @@ static void set_reflex(clipper *c, uint32_t i, int reflex)
     }
 }
 
-/* Nodes in the places of the three corners are copies that bridges made; they lie in other sectors and do not matter. */
-static int is_ear(const clipper *c, const node *n)
+static uint32_t cell_of(const lattice *l, int axis, double v)
 {
+    double t = (v - l->low[axis]) * l->per_unit[axis];
+    return t > 0 ? t < l->side - 1 ? (uint32_t)t : l->side - 1 : 0;
+}
+
+/* Counts the ring's nodes in their cells, or, the second time, puts them there. */
+static void fill_cells(const clipper *c, uint32_t start, int put)
+{
+    const lattice *l = &c->places;
+    uint32_t i = start;
+    do {
+        const node *n = &c->nodes[i];
+        uint32_t *at = &l->start[cell_of(l, 0, n->u) * l->side + cell_of(l, 1, n->v) + 1];
+        if (put) {
+            l->items[--*at] = i;
+        } else {
+            ++*at;
+        }
+        i = n->next;
+    } while (i != start);
+}
+
+/* Puts the nodes left on the ring into a lattice of about as many cells. Returns 0 when memory fails. */
+static int place_nodes(clipper *c, uint32_t start, uint32_t left)
+{
+    lattice *l = &c->places;
+    double high[2];
+    uint32_t i = start, side = (uint32_t)sqrt((double)left);
+    size_t cells;
+    l->side = side < MOST_CELLS ? side : MOST_CELLS;
+    l->made_of = left;
+    cells = (size_t)l->side * l->side;
+    if (!l->start) {
+        l->start_room = cells + 2;
+        l->item_room = left;
+        l->start = gnoi_malloc(c->context, l->start_room, sizeof *l->start);
+        l->items = gnoi_malloc(c->context, l->item_room, sizeof *l->items);
+    }
+    if (!l->start || !l->items) {
+        return 0;
+    }
+    l->low[0] = high[0] = c->nodes[i].u;
+    l->low[1] = high[1] = c->nodes[i].v;
+    do {
+        const node *n = &c->nodes[i];
+        l->low[0] = fmin(l->low[0], n->u);
+        high[0] = fmax(high[0], n->u);
+        l->low[1] = fmin(l->low[1], n->v);
+        high[1] = fmax(high[1], n->v);
+        i = n->next;
+    } while (i != start);
+    l->per_unit[0] = high[0] > l->low[0] ? l->side / (high[0] - l->low[0]) : 0;
+    l->per_unit[1] = high[1] > l->low[1] ? l->side / (high[1] - l->low[1]) : 0;
+    memset(l->start, 0, (cells + 2) * sizeof *l->start);
+    fill_cells(c, start, 0);
+    for (size_t k = 1; k < cells + 2; k++) {
+        l->start[k] += l->start[k - 1];
+    }
+    fill_cells(c, start, 1); /* start[k + 1] is now where cell k begins */
+    memmove(l->start, l->start + 1, cells * sizeof *l->start);
+    l->start[cells] = left;
+    return 1;
+}
+
+/* The triangle before and after a node with its bounds. */
+typedef struct ear {
+    const node *p, *n, *q;
+    double low_u, high_u, low_v, high_v;
+} ear;
+
+/* Nodes in the places of the three corners are copies that bridges made; they lie in other sectors and do not matter. */
+static int lies_in(const ear *e, const node *r)
+{
+    return r->u >= e->low_u && r->u <= e->high_u && r->v >= e->low_v && r->v <= e->high_v && in_triangle(e->p, e->n, e->q, r) &&
+           !same_place(r, e->p) && !same_place(r, e->n) && !same_place(r, e->q);
+}
+
+static int is_ear(clipper *c, const node *n)
+{
+    const lattice *l = &c->places;
     const node *p = &c->nodes[n->previous], *q = &c->nodes[n->next];
-    double low_u = fmin(p->u, fmin(n->u, q->u)), high_u = fmax(p->u, fmax(n->u, q->u));
-    double low_v = fmin(p->v, fmin(n->v, q->v)), high_v = fmax(p->v, fmax(n->v, q->v));
-    uint32_t k;
-    for (k = 0; k < c->reflex_count; k++) {
-        const node *r = &c->nodes[c->reflex[k]];
-        if (r->u >= low_u && r->u <= high_u && r->v >= low_v && r->v <= high_v && in_triangle(p, n, q, r) &&
-            !same_place(r, p) && !same_place(r, n) && !same_place(r, q)) {
+    const ear e = {p, n, q, fmin(p->u, fmin(n->u, q->u)), fmax(p->u, fmax(n->u, q->u)), fmin(p->v, fmin(n->v, q->v)), fmax(p->v, fmax(n->v, q->v))};
+    if (l->side > 0) {
+        const uint32_t u0 = cell_of(l, 0, e.low_u), u1 = cell_of(l, 0, e.high_u), v0 = cell_of(l, 1, e.low_v), v1 = cell_of(l, 1, e.high_v);
+        size_t looked = 0;
+        for (uint32_t u = u0; u <= u1; u++) {
+            const uint32_t from = l->start[u * l->side + v0], to = l->start[u * l->side + v1 + 1]; /* one run for all cells of the row */
+            looked += 1 + to - from;
+            for (uint32_t k = from; k < to; k++) {
+                const node *r = &c->nodes[l->items[k]];
+                if (r->reflex != GNOI_NONE && lies_in(&e, r)) {
+                    return 0;
+                }
+            }
+        }
+        count_work(c, looked);
+        return 1;
+    }
+    count_work(c, c->reflex_count);
+    for (uint32_t k = 0; k < c->reflex_count; k++) {
+        if (lies_in(&e, &c->nodes[c->reflex[k]])) {
             return 0;
         }
     }
@@ -269,7 +373,6 @@ static void judge(clipper *c, uint32_t i)
     node *n = &c->nodes[i];
     int reflex = !(area(&c->nodes[n->previous], n, &c->nodes[n->next]) > 0);
     set_reflex(c, i, reflex);
-    count_work(c, c->reflex_count);
     n->ear = !reflex && !c->stopped && is_ear(c, n);
 }
 
@@ -328,12 +431,19 @@ static void judge_all(clipper *c, uint32_t start)
     } while (i != start);
 }
 
-static void clip_all(clipper *c, uint32_t start)
+/* Returns 0 when memory fails. */
+static int clip_all(clipper *c, uint32_t start)
 {
     uint32_t left = c->node_count, i = start, looked = 0;
     int rescans = RESCANS;
+    if (left >= MANY_NODES && !place_nodes(c, start, left)) {
+        return 0;
+    }
     judge_all(c, start);
     while (left > 3 && !c->stopped) {
+        if (c->places.side > 0 && left < c->places.made_of / 2 && !place_nodes(c, i, left)) {
+            return 0;
+        }
         if (c->nodes[i].ear) {
             i = c->nodes[clip(c, i)].next; /* past the neighbour, so that slivers do not gather at one node */
             left--;
@@ -352,6 +462,7 @@ static void clip_all(clipper *c, uint32_t start)
         }
     }
     emit(c, i);
+    return 1;
 }
 
 /* ---- the whole --------------------------------------------------------------------------------------------------- */
@@ -419,6 +530,7 @@ gno_status gnoi_triangulate(gno_context *context, const double (*positions)[3], 
     gno_status status = GNO_OK;
     clipper c;
     c.context = context;
+    memset(&c.places, 0, sizeof c.places);
     c.work = 0;
     c.stopped = 0;
     c.positions = positions;
@@ -441,14 +553,15 @@ gno_status gnoi_triangulate(gno_context *context, const double (*positions)[3], 
         } else {
             outer = make_ring(&c, first, ring_corner[1], 1);
             join_holes(&c, ring_corner, ring_count, outer, holes);
-            clip_all(&c, outer);
-            status = c.stopped ? GNO_ERROR_CANCELLED : GNO_OK;
+            status = !clip_all(&c, outer) ? GNO_ERROR_MEMORY : c.stopped ? GNO_ERROR_CANCELLED : GNO_OK;
         }
     }
     if (!local) {
         gnoi_free(context, c.nodes, count, sizeof *c.nodes);
         gnoi_free(context, c.reflex, count, sizeof *c.reflex);
         gnoi_free(context, holes, ring_count, sizeof *holes);
+        gnoi_free(context, c.places.start, c.places.start_room, sizeof *c.places.start);
+        gnoi_free(context, c.places.items, c.places.item_room, sizeof *c.places.items);
     }
     return status;
 }

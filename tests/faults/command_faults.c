@@ -296,6 +296,16 @@ static int bad(const run *r, const char *what, int status)
     return 1;
 }
 
+/* A report that goes to standard output names there what could not be read. */
+static int reports(const run *r)
+{
+    size_t size;
+    char *text = r->is_stream ? contents(r->output, &size) : NULL;
+    const int found = text != NULL && memmem(text, size, "cannot", 6) != NULL;
+    free(text);
+    return found;
+}
+
 /* Returns 1 when a fault was taken badly. */
 static int judge(const run *r, int status)
 {
@@ -308,7 +318,7 @@ static int judge(const run *r, int status)
     }
     if (WEXITSTATUS(status) == FINE) {
         /* Materials and textures that cannot be read are done without, and a warning says so. */
-        return output == 1 || (output != 0 && says("gnomon: warning: ")) ? 0 : bad(r, "done, but the output is not what it should be", status);
+        return output == 1 || (output != 0 && (says("gnomon: warning: ") || reports(r))) ? 0 : bad(r, "done, but the output is not what it should be", status);
     }
     if (!says("gnomon: ")) {
         return bad(r, "no message", status);

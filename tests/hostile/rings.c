@@ -168,7 +168,7 @@ int hostile_holes(size_t holes, char *outcome, size_t room)
         mesh.ring_count = holes + 1;
         mesh.ring_start = ring;
         mesh.corner_vertex = corner;
-        mesh.shading = GNO_SHADING_PHONG;
+        mesh.shading = GNO_SHADING_FLAT;
         status = gno_scene_add_mesh(s.scene, &mesh, NULL);
     }
     if (!status)
