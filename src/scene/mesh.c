@@ -4,13 +4,11 @@
  * Order of work: check counts, make room, copy and check into the room beyond the counts, and only then raise the counts.
  * Invariant: until that last step (commit) nothing that the scene shows has changed, so failing needs no undoing.
  */
-#include "scene/scene.h"
+#include "scene/mesh_check.h"
 
-#include <limits.h>
 #include <string.h>
 
 #define MAX_POLYGON_RINGS 16777215u /* gnoi_poly counts rings in 24 bits */
-#define LABEL_SIZE 96
 
 /* The scene's growing arrays. */
 enum {
@@ -19,14 +17,6 @@ enum {
 };
 
 #define MANY_CORNERS 200000
-
-typedef struct adding {
-    gno_scene *scene;
-    gno_context *context;
-    const gno_mesh_def *mesh;
-    size_t normal_count, texcoord_count; /* 0 where the array is NULL */
-    char label[LABEL_SIZE];              /* "mesh 'wall'" or "mesh 3", for messages */
-} adding;
 
 gno_mesh_def gno_mesh_def_default(void)
 {
@@ -40,139 +30,9 @@ gno_mesh_def gno_mesh_def_default(void)
     return mesh;
 }
 
-/* ---- messages -------------------------------------------------------------------------------------------------- */
-
-static void append(char *label, size_t *length, const char *text)
-{
-    while (*text && *length + 1 < LABEL_SIZE) {
-        label[(*length)++] = *text++;
-    }
-    label[*length] = '\0';
-}
-
-static void make_label(adding *a)
-{
-    size_t length = 0, number = a->scene->object_count;
-    char digits[24];
-    size_t at = sizeof digits - 1;
-    append(a->label, &length, "mesh ");
-    if (a->mesh->name) {
-        append(a->label, &length, "'");
-        append(a->label, &length, a->mesh->name);
-        append(a->label, &length, "'");
-        return;
-    }
-    digits[at] = '\0';
-    do {
-        digits[--at] = (char)('0' + number % 10);
-        number /= 10;
-    } while (number);
-    append(a->label, &length, digits + at);
-}
-
-static gno_status out_of_range(const adding *a, size_t corner, const char *what, int index, size_t count)
+static gno_status out_of_range(const gnoi_adding *a, size_t corner, const char *what, int index, size_t count)
 {
     return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: corner %zu names %s %d of %zu", a->label, corner, what, index, count);
-}
-
-/* ---- checks of counts and options ------------------------------------------------------------------------------- */
-
-static gno_status check_limit(const adding *a, const char *what, size_t there, size_t more, size_t limit)
-{
-    if (more <= limit && there <= limit - more) {
-        return GNO_OK;
-    }
-    return gnoi_fail(a->context, GNO_ERROR_LIMIT, "%s: %zu %s, with %zu in the scene, exceed the limit of %zu", a->label, more,
-                     what, there, limit);
-}
-
-static gno_status check_limits(const adding *a)
-{
-    const gno_scene *s = a->scene;
-    const gno_mesh_def *m = a->mesh;
-    gno_status status = check_limit(a, "vertices", s->vertex_count, m->vertex_count, GNO_MAX_POLYGONS);
-    if (status == GNO_OK) {
-        status = check_limit(a, "polygons", s->polygon_count, m->polygon_count, GNO_MAX_POLYGONS);
-    }
-    if (status == GNO_OK) {
-        status = check_limit(a, "rings", s->ring_count, m->ring_count, GNO_MAX_CORNERS);
-    }
-    if (status == GNO_OK) {
-        status = check_limit(a, "corners", s->corner_count, m->corner_count, GNO_MAX_CORNERS);
-    }
-    if (status == GNO_OK) {
-        status = check_limit(a, "normals", s->normal_count, m->normal_count, GNO_MAX_CORNERS);
-    }
-    if (status == GNO_OK) {
-        status = check_limit(a, "texture coordinates", s->texcoord_count, m->texcoord_count, GNO_MAX_CORNERS);
-    }
-    if (status == GNO_OK) {
-        status = check_limit(a, "object", s->object_count, 1, GNO_MAX_POLYGONS);
-    }
-    return status;
-}
-
-/* Before anything is read by these counts: a wrong one is found where it does no harm. */
-static gno_status check_ends(const adding *a, const char *what, const unsigned *offsets, size_t count, size_t total)
-{
-    if (offsets && (offsets[0] != 0 || offsets[count] != total)) {
-        return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %s runs from %u to %u, not from 0 to %zu", a->label, what, offsets[0],
-                         offsets[count], total);
-    }
-    return GNO_OK;
-}
-
-static gno_status check_arrays(const adding *a)
-{
-    const gno_mesh_def *m = a->mesh;
-    const char *missing = NULL;
-    if (!m->positions && m->vertex_count) {
-        missing = "positions";
-    } else if (!m->normals && m->normal_count) {
-        missing = "normals";
-    } else if (!m->texcoords && m->texcoord_count) {
-        missing = "texcoords";
-    } else if (!m->corner_vertex && m->corner_count) {
-        missing = "corner_vertex";
-    }
-    if (missing) {
-        return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %s is NULL but its count is not 0", a->label, missing);
-    }
-    if (!m->polygon_start && m->ring_count != m->polygon_count) {
-        return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %zu rings for %zu polygons, and no polygon_start", a->label,
-                         m->ring_count, m->polygon_count);
-    }
-    if (!m->ring_start && (m->corner_count % 3 != 0 || m->corner_count / 3 != m->ring_count)) {
-        return gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %zu corners for %zu triangles (no ring_start)", a->label,
-                         m->corner_count, m->ring_count);
-    }
-    const gno_status status = check_ends(a, "polygon_start", m->polygon_start, m->polygon_count, m->ring_count);
-    return status == GNO_OK ? check_ends(a, "ring_start", m->ring_start, m->ring_count, m->corner_count) : status;
-}
-
-static gno_status check_options(const adding *a)
-{
-    const gno_mesh_def *m = a->mesh;
-    const char *key = NULL;
-    double value = 0;
-    int i;
-    if (m->shading < -1 || m->shading > GNO_SHADING_PHONG) {
-        key = "shading", value = m->shading;
-    } else if ((unsigned)m->weighting > GNO_WEIGHTING_EQUAL) {
-        key = "weighting", value = (double)m->weighting;
-    } else if (!(m->crease >= 0 && m->crease <= 180)) {
-        key = "crease", value = m->crease;
-    } else if (m->priority < INT16_MIN || m->priority > INT16_MAX) {
-        key = "priority", value = m->priority;
-    } else if (m->material < 0 || (size_t)m->material >= a->scene->material_count) {
-        key = "material", value = m->material;
-    }
-    for (i = 0; i < 12 && !key; i++) {
-        if (!(fabs(m->transform[i]) <= GNO_MAX_COORDINATE)) {
-            key = "transform", value = m->transform[i];
-        }
-    }
-    return key ? gnoi_fail(a->context, GNO_ERROR_ARGUMENT, "%s: %s %g is out of range", a->label, key, value) : GNO_OK;
 }
 
 /* ---- room ------------------------------------------------------------------------------------------------------ */
@@ -191,7 +51,7 @@ static void set_room(room *r, void *old, size_t used, size_t held, size_t more, 
     r->size = size;
 }
 
-static void set_rooms(const adding *a, room *r)
+static void set_rooms(const gnoi_adding *a, room *r)
 {
     gno_scene *s = a->scene;
     const gno_mesh_def *m = a->mesh;
@@ -217,7 +77,7 @@ static size_t grown(size_t held, size_t need)
 }
 
 /* Arrays that share one capacity must grow together or not at all; so all grow into new blocks before any is taken. */
-static gno_status make_room(const adding *a)
+static gno_status make_room(const gnoi_adding *a)
 {
     gno_scene *s = a->scene;
     room r[ARRAY_COUNT];
@@ -286,7 +146,7 @@ static int is_in_range(const double p[3])
     return (fabs(p[0]) <= GNO_MAX_COORDINATE) & (fabs(p[1]) <= GNO_MAX_COORDINATE) & (fabs(p[2]) <= GNO_MAX_COORDINATE);
 }
 
-static gno_status copy_positions(const adding *a)
+static gno_status copy_positions(const gnoi_adding *a)
 {
     const double(*in)[3] = (const double(*)[3])a->mesh->positions;
     double(*out)[3] = a->scene->positions + a->scene->vertex_count;
@@ -333,7 +193,7 @@ static void normal_matrix(const double t[12], vec3 rows[3])
 }
 
 /* A normal that is not finite becomes zero, which prepares as "none": files in circulation carry such normals. */
-static void copy_normals(const adding *a)
+static void copy_normals(const gnoi_adding *a)
 {
     const double(*in)[3] = (const double(*)[3])a->mesh->normals;
     double(*out)[3] = a->scene->normals + a->scene->normal_count;
@@ -355,7 +215,7 @@ static void copy_normals(const adding *a)
     }
 }
 
-static gno_status copy_texcoords(const adding *a)
+static gno_status copy_texcoords(const gnoi_adding *a)
 {
     const double(*in)[2] = (const double(*)[2])a->mesh->texcoords;
     double(*out)[2] = a->scene->texcoords + a->scene->texcoord_count;
@@ -370,7 +230,7 @@ static gno_status copy_texcoords(const adding *a)
     return GNO_OK;
 }
 
-static gno_status copy_vertex_indices(const adding *a)
+static gno_status copy_vertex_indices(const gnoi_adding *a)
 {
     const int *in = a->mesh->corner_vertex;
     int *out = a->scene->corner_vertex + a->scene->corner_count;
@@ -389,7 +249,7 @@ static gno_status copy_vertex_indices(const adding *a)
 }
 
 /* Indices into normals or texcoords, where -1 means none. */
-static gno_status copy_optional(const adding *a, const int *in, int *out, size_t there, size_t count, const char *what)
+static gno_status copy_optional(const gnoi_adding *a, const int *in, int *out, size_t there, size_t count, const char *what)
 {
     size_t i, corners = a->mesh->corner_count;
     int good = 1;
@@ -409,7 +269,7 @@ static gno_status copy_optional(const adding *a, const int *in, int *out, size_t
     return GNO_OK;
 }
 
-static gno_status copy_corners(const adding *a)
+static gno_status copy_corners(const gnoi_adding *a)
 {
     gno_scene *s = a->scene;
     const gno_mesh_def *m = a->mesh;
@@ -425,7 +285,7 @@ static gno_status copy_corners(const adding *a)
 }
 
 /* Copies count+1 offsets with ends as check_ends wants them, which never decrease; NULL: every `step` elements. out[0] stands. */
-static gno_status copy_offsets(const adding *a, const char *what, const unsigned *in, size_t count, unsigned step, unsigned *out)
+static gno_status copy_offsets(const gnoi_adding *a, const char *what, const unsigned *in, size_t count, unsigned step, unsigned *out)
 {
     unsigned base = out[0];
     size_t i;
@@ -439,7 +299,7 @@ static gno_status copy_offsets(const adding *a, const char *what, const unsigned
     return GNO_OK;
 }
 
-static gno_status check_ring_counts(const adding *a)
+static gno_status check_ring_counts(const gnoi_adding *a)
 {
     const unsigned *start = a->mesh->polygon_start;
     size_t i;
@@ -454,7 +314,7 @@ static gno_status check_ring_counts(const adding *a)
     return GNO_OK;
 }
 
-static gno_status copy_polygons(const adding *a)
+static gno_status copy_polygons(const gnoi_adding *a)
 {
     gno_scene *s = a->scene;
     const gno_mesh_def *m = a->mesh;
@@ -504,7 +364,7 @@ static void invert(const double t[12], double inverse[12])
     }
 }
 
-static gno_status copy_object(const adding *a)
+static gno_status copy_object(const gnoi_adding *a)
 {
     const gno_mesh_def *m = a->mesh;
     gnoi_object *object = &a->scene->objects[a->scene->object_count];
@@ -530,7 +390,7 @@ static gno_status copy_object(const adding *a)
     return GNO_OK;
 }
 
-static void commit(const adding *a)
+static void commit(const gnoi_adding *a)
 {
     gno_scene *s = a->scene;
     s->vertex_count += a->mesh->vertex_count;
@@ -543,22 +403,13 @@ static void commit(const adding *a)
     gnoi_scene_changed(s);
 }
 
-static gno_status check_mesh(const adding *a)
-{
-    gno_status status = check_limits(a);
-    if (status == GNO_OK) {
-        status = check_arrays(a);
-    }
-    return status == GNO_OK ? check_options(a) : status;
-}
-
 /* Between the steps of copying a mesh that is large enough to take some milliseconds. */
-static gno_status go_on(const adding *a, int step)
+static gno_status go_on(const gnoi_adding *a, int step)
 {
     return a->mesh->corner_count < MANY_CORNERS ? GNO_OK : gnoi_progress(a->context, "copy mesh", step / 4.0);
 }
 
-static gno_status copy_mesh(const adding *a)
+static gno_status copy_mesh(const gnoi_adding *a)
 {
     gno_status status = copy_polygons(a);
     if (status == GNO_OK) {
@@ -590,7 +441,7 @@ static gno_status copy_mesh(const adding *a)
 
 gno_status gno_scene_add_mesh(gno_scene *scene, const gno_mesh_def *mesh, size_t *first_polygon)
 {
-    adding a;
+    gnoi_adding a;
     gno_status status;
     if (!scene || !mesh) {
         return gnoi_fail(gno_scene_context(scene), GNO_ERROR_ARGUMENT, "gno_scene_add_mesh: scene or mesh is NULL");
@@ -600,8 +451,8 @@ gno_status gno_scene_add_mesh(gno_scene *scene, const gno_mesh_def *mesh, size_t
     a.mesh = mesh;
     a.normal_count = mesh->normals ? mesh->normal_count : 0;
     a.texcoord_count = mesh->texcoords ? mesh->texcoord_count : 0;
-    make_label(&a);
-    status = check_mesh(&a);
+    gnoi_label_mesh(&a);
+    status = gnoi_check_mesh(&a);
     if (status == GNO_OK) {
         status = make_room(&a);
     }
