@@ -131,9 +131,11 @@ static void set_bar(gnoi_tile *tile, uint32_t line)
     tile->bar[line] = l->uncovered > 0 ? -HUGE_VALF : l->farthest;
 }
 
+/* The pixels of a row from x0 to x1, which may both lie far outside of it. */
 static uint32_t pixel_mask(float x0, float x1)
 {
-    unsigned first = x0 > 0 ? (unsigned)x0 : 0, last = x1 < GNOI_TILE_W - 1 ? (unsigned)x1 : GNOI_TILE_W - 1;
+    unsigned first = x0 > 0 ? x0 < GNOI_TILE_W ? (unsigned)x0 : GNOI_TILE_W : 0;
+    unsigned last = x1 < GNOI_TILE_W - 1 ? x1 > 0 ? (unsigned)x1 : 0 : GNOI_TILE_W - 1;
     return (0xffffffffu >> (31 - last)) & (0xffffffffu << first);
 }
 

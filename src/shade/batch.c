@@ -42,8 +42,6 @@ INLINE float power(float x, float n)
     return some * exp2_of(y);
 }
 
-float gnoi_shade_power(float x, float n) { return power(x, n); }
-
 /* Unit normals, unit directions to the viewer and the viewer's distance. */
 VECTOR_CLONES static void prepare(gnoi_batch *b, int count, int orthographic, float fx, float fy, float fz)
 {

@@ -38,7 +38,4 @@ void gnoi_batch_shade(gnoi_batch *batch, const gnoi_view *view, const gnoi_lamp 
 void gnoi_shade_point(const gnoi_view *view, const gnoi_lamp *lamp, const gno_material *material, double view_start, vec3 point,
                       vec3 n, double rgb[3]);
 
-/* x^n for x in [0,1], n >= 0 (x = 0 gives 0, also for n = 0), relative error below 1e-6 for n up to 1000. */
-float gnoi_shade_power(float x, float n);
-
 #endif
