@@ -5,7 +5,7 @@
  *        -> tile_stack.c: surfaces that let light through, over and between them (scan/stack.h)
  *        -> tile_light.c: a column of each lamp's shadow matrix for every surface seen
  *        -> tile_rows.c: visible pieces of a pixel row -> coverage by surface and pixel, split by shadow polygons
- *        -> tile_shade.c: one sample for each pixel and surface -> lighting -> the tile's picture
+ *        -> tile_shade.c, tile_run.c: one sample for each pixel and surface -> lighting -> the tile's picture
  *        -> tile_layers.c: what covers how much of each pixel -> layers beside the picture, where they are asked for
  *        -> tile.c: which pixels vary and get more lines; the tile's part of the picture
  * Invariants: a tile depends on nothing but the frame, so that any thread may make it; each line adds a coverage of exactly
@@ -92,11 +92,15 @@ typedef struct gnoi_slot {
     uint32_t mapping;         /* textured, bumped: the first of two in tile.mappings, of texture and bump; GNOI_NONE until needed */
 } gnoi_slot;
 
+/* Cells taken at once by vector code, which may read so many from any cell on. */
+#define GNOI_CELLS_STEP 8
+#define GNOI_CELLS (GNOI_TILE_W + GNOI_CELLS_STEP)
+
 /* Coverage of one surface, or of its lit part, along a pixel row: sums over pieces of length, and of length times the
  * offset of its middle from the pixel's centre. Lengths in pixels. */
 typedef struct gnoi_cells {
-    float length[GNOI_TILE_W], mx[GNOI_TILE_W], my[GNOI_TILE_W];
-    float by_line[GNOI_BASE_LINES][GNOI_TILE_W]; /* length on each base line; not kept for finer lines */
+    float length[GNOI_CELLS], mx[GNOI_CELLS], my[GNOI_CELLS];
+    float by_line[GNOI_BASE_LINES][GNOI_CELLS]; /* length on each base line; not kept for finer lines */
 } gnoi_cells;
 
 /* What a surface covers of one pixel, on the base lines or on the finer ones: as gnoi_cells. */
@@ -286,6 +290,10 @@ int gnoi_tile_base_line(const gnoi_tile *tile, int row, uint32_t line);
 /* tile_rows.c: the samples of one pixel of a surface, whose coverage is in tile->cells and, for lamps whose column is to be split,
  * in tile->lit and tile->lit_colour. Of `columns`, one for each lamp, only the state is read. */
 void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel);
+
+/* tile_run.c: the samples of all pixels from `first` to `last`, each covered by the surface, as gnoi_tile_sample_pixel makes them; 0 when the
+ * surface, its columns or the tile ask for more than it can do, and nothing is done. */
+int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last);
 
 /* tile_shade.c: one sample of a slot: the part of pixel `column` of `row` that `cells` hold, at its middle. The caller has
  * set batch.weight[lamp][batch.count] to the coverage (in lines) that each lamp reaches. tint NULL: the surface with its ambient

@@ -208,6 +208,18 @@ void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column 
         }
 }
 
+static void sample_pixels(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last)
+{
+    for (int pixel = first; pixel <= last && !tile->failed; pixel++) {
+        if (!(tile->cells.length[pixel] > 0))
+            continue;
+        if (tile->job->layers)
+            gnoi_tile_layers_keep(tile, (uint32_t)(slot - tile->slots), columns, row, pixel);
+        if (!tile->fragments.alone)
+            gnoi_tile_sample_pixel(tile, slot, columns, row, pixel);
+    }
+}
+
 static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
@@ -234,16 +246,13 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
     for (int j = 0; j < lamps && !tile->failed; j++)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
             split_pieces(tile, row, slot, &tile->columns[slot->first_column + (uint32_t)j], j);
-    for (int pixel = first; pixel <= last && !tile->failed; pixel++)
-        if (tile->cells.length[pixel] > 0) {
-            tile->row_cover[pixel] += tile->cells.length[pixel];
-            for (int i = 0; i < tile->job->def.base_lines && tile->judging; i++)
-                tile->row_by_line[i][pixel] += tile->cells.by_line[i][pixel];
-            if (tile->job->layers)
-                gnoi_tile_layers_keep(tile, (uint32_t)(slot - tile->slots), columns, row, pixel);
-            if (!tile->fragments.alone)
-                gnoi_tile_sample_pixel(tile, slot, columns, row, pixel);
-        }
+    for (int pixel = first; pixel <= last; pixel++)
+        tile->row_cover[pixel] += tile->cells.length[pixel];
+    for (int i = 0; i < tile->job->def.base_lines && tile->judging; i++)
+        for (int pixel = first; pixel <= last; pixel++)
+            tile->row_by_line[i][pixel] += tile->cells.by_line[i][pixel];
+    if (!tile->failed && !gnoi_tile_sample_run(tile, slot, columns, row, first, last))
+        sample_pixels(tile, slot, columns, row, first, last);
     if (!slot->receiver.poly->opaque)
         gnoi_tile_uncover(tile, first, last);
 }

@@ -55,8 +55,7 @@ static void set_triangle(gnoi_interp *interp, const gno_scene *scene, const gnoi
     set_weights(interp, scene, view);
 }
 
-/* The smallest of the three weights relative to their sum: >= 0 inside. */
-static double depth_inside(const gnoi_interp *interp, double x, double y)
+double gnoi_interp_depth(const gnoi_interp *interp, double x, double y)
 {
     double w[3], sum, low;
     for (int i = 0; i < 3; i++)
@@ -71,14 +70,14 @@ void gnoi_interp_seek(gnoi_interp *interp, const gno_scene *scene, const gnoi_vi
 {
     double best = -2;
     uint32_t found = 0;
-    if (interp->ready && (interp->triangle_count == 1 || depth_inside(interp, x, y) >= 0))
+    if (interp->ready && (interp->triangle_count == 1 || gnoi_interp_depth(interp, x, y) >= 0))
         return;
     interp->triangle_count = poly->corner_count == 3 || poly->triangle == GNOI_NONE
                                  ? 1 : poly->corner_count + 2u * (poly->ring_count - 1u) - 2u;
     for (uint32_t t = 0; t < interp->triangle_count && best < 0; t++) {
         double depth;
         set_triangle(interp, scene, view, poly, t);
-        depth = depth_inside(interp, x, y);
+        depth = gnoi_interp_depth(interp, x, y);
         if (depth > best) {
             best = depth;
             found = t;

@@ -23,4 +23,8 @@ typedef struct gnoi_interp {
 /* Makes `interp` valid for picture point (x,y) of `poly`: picks the triangle that holds it, or the nearest. */
 void gnoi_interp_seek(gnoi_interp *interp, const gno_scene *scene, const gnoi_view *view, const gnoi_poly *poly, double x, double y);
 
+/* How deep inside the triangle that is set now picture point (x,y) lies: the smallest of the three weights relative to their sum, >= 0
+ * inside. */
+double gnoi_interp_depth(const gnoi_interp *interp, double x, double y);
+
 #endif

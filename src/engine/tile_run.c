@@ -1,0 +1,193 @@
+/* tile_run.c -- samples of a surface in neighbouring pixels, set up side by side by vector code: see tile.h.
+ *
+ * The numbers are those of gnoi_tile_sample, bit by bit, which serves all that is rarer: textures, bumps, tints, intensities taken once,
+ * lamps that reach a part of a pixel.
+ */
+#include "base/vector.h"
+#include "engine/tile.h"
+
+#define INLINE static inline __attribute__((always_inline))
+
+/* Pixels taken at once, in loops of fixed length: what lies beyond the samples at hand counts for nothing. */
+#define STEP GNOI_CELLS_STEP
+
+/* Fewer are done sooner one by one. */
+#define LEAST_RUN 3
+
+/* What the samples of a slot in a row have in common. */
+typedef struct common {
+    double x0, y0; /* in the picture: the centre of the tile's first pixel, the row's middle */
+    const gnoi_view *view;
+    const gnoi_screen_plane *nearness, *normal; /* normal: three, or NULL for the plane's own everywhere */
+    vec3 g;                                     /* the plane's own, on the viewer's side */
+    const gnoi_tone *tone;
+} common;
+
+/* Where in the picture samples lie. */
+typedef struct places {
+    double x[STEP], y[STEP];
+} places;
+
+INLINE void set_places(places *restrict p, const gnoi_cells *restrict cells, int first, const common *restrict c)
+{
+    for (int i = 0; i < STEP; i++) {
+        float length = cells->length[first + i];
+        p->x[i] = c->x0 + (first + i) + (double)(cells->mx[first + i] / length);
+        p->y[i] = c->y0 + (double)(cells->my[first + i] / length);
+    }
+}
+
+INLINE void set_points(gnoi_batch *restrict b, int at, const places *restrict p, const common *restrict c, int orthographic)
+{
+    const gnoi_screen_plane nearness = *c->nearness;
+    const vec3 right = c->view->right, up = c->view->up, forward = c->view->forward;
+    const double middle_x = 0.5 * c->view->width, middle_y = 0.5 * c->view->height, unit = c->view->unit;
+    for (int i = 0; i < STEP; i++) {
+        double u = (p->x[i] - middle_x) * unit, v = (p->y[i] - middle_y) * unit, z = gnoi_plane_at(&nearness, p->x[i], p->y[i]);
+        vec3 q = v3_sub(v3_scale(right, u), v3_scale(up, v));
+        q = orthographic ? v3_mad(q, forward, -z) : v3_scale(v3_add(q, forward), 1 / z);
+        b->px[at + i] = (float)q.x;
+        b->py[at + i] = (float)q.y;
+        b->pz[at + i] = (float)q.z;
+    }
+}
+
+INLINE void set_normals(gnoi_batch *restrict b, int at, const places *restrict p, const gnoi_screen_plane *restrict normal, vec3 g)
+{
+    const gnoi_screen_plane f[3] = {normal[0], normal[1], normal[2]};
+    for (int i = 0; i < STEP; i++) {
+        vec3 n = v3(gnoi_plane_at(&f[0], p->x[i], p->y[i]), gnoi_plane_at(&f[1], p->x[i], p->y[i]), gnoi_plane_at(&f[2], p->x[i], p->y[i]));
+        n = v3_scale(n, (v3_dot(n, g) < 0 ? -1.0 : 1.0) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
+        b->nx[at + i] = (float)n.x;
+        b->ny[at + i] = (float)n.y;
+        b->nz[at + i] = (float)n.z;
+    }
+}
+
+INLINE void fill(float *restrict to, float value)
+{
+    for (int i = 0; i < STEP; i++)
+        to[i] = value;
+}
+
+INLINE void set_surface(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c)
+{
+    const gnoi_tone *tone = c->tone;
+    fill(b->gx + at, (float)c->g.x);
+    fill(b->gy + at, (float)c->g.y);
+    fill(b->gz + at, (float)c->g.z);
+    for (int k = 0; k < 3; k++) {
+        fill(b->kd[k] + at, tone->diffuse[k]);
+        fill(b->ks[k] + at, tone->specular[k]);
+        for (int i = 0; i < STEP; i++)
+            b->rgb[k][at + i] = cells->length[first + i] * tone->ambient[k];
+    }
+    fill(b->shininess + at, tone->shininess);
+    for (int i = 0; i < STEP; i++)
+        b->coverage[at + i] = cells->length[first + i];
+}
+
+INLINE void set_samples(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c, int orthographic)
+{
+    places p;
+    set_places(&p, cells, first, c);
+    set_points(b, at, &p, c, orthographic);
+    if (c->normal) {
+        set_normals(b, at, &p, c->normal, c->g);
+    } else {
+        fill(b->nx + at, (float)c->g.x);
+        fill(b->ny + at, (float)c->g.y);
+        fill(b->nz + at, (float)c->g.z);
+    }
+    set_surface(b, at, cells, first, c);
+}
+
+VECTOR_CLONES static void set_near(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c)
+{
+    set_samples(b, at, cells, first, c, 0);
+}
+
+VECTOR_CLONES static void set_far(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c)
+{
+    set_samples(b, at, cells, first, c, 1);
+}
+
+/* What arrives of the lamps, which pixels the samples are of, and their coverage by line. */
+static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int first, int at)
+{
+    gnoi_batch *b = &tile->batch;
+    const float *length = tile->cells.length + first;
+    for (int j = 0; j < tile->job->lamp_count; j++) {
+        float lit = columns[j].state == GNOI_COLUMN_LIT ? 1 : 0, *weight = b->weight + (size_t)j * GNOI_BATCH + at;
+        for (int i = 0; i < STEP; i++)
+            weight[i] = lit * length[i];
+    }
+    for (int i = 0; i < STEP; i++)
+        b->tag[at + i] = (uint32_t)(row * GNOI_TILE_W + first + i);
+    for (int l = 0; l < tile->job->def.base_lines && tile->judging; l++)
+        for (int i = 0; i < STEP; i++)
+            tile->cover_by_line[l][at + i] = tile->cells.by_line[l][first + i];
+}
+
+/* Whether the surface is one for this file. */
+static int is_plain(const gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *columns)
+{
+    const gnoi_poly *poly = slot->receiver.poly;
+    int plain = (poly->shading == GNO_SHADING_FLAT || poly->shading == GNO_SHADING_PHONG) && !tile->job->textured && !tile->tinted &&
+                !tile->veiled && !tile->job->layers && !tile->job->tones[poly->material].bumped;
+    for (int j = 0; j < tile->job->lamp_count; j++)
+        plain &= columns[j].state != GNOI_COLUMN_SPLIT;
+    return plain;
+}
+
+/* Makes the slot's interpolation valid from one pixel to another; 0 when no one triangle of the polygon holds both samples. */
+static int seek(gnoi_tile *tile, gnoi_slot *slot, const common *c, int first, int last)
+{
+    const gnoi_cells *cells = &tile->cells;
+    gnoi_interp *interp = &slot->interp;
+    for (int end = 0, p = first; end < 2; end++, p = last) {
+        double x = c->x0 + p + (double)(cells->mx[p] / cells->length[p]), y = c->y0 + (double)(cells->my[p] / cells->length[p]);
+        if (end == 0)
+            gnoi_interp_seek(interp, tile->job->scene, &tile->job->view, slot->receiver.poly, x, y);
+        if (interp->triangle_count == 1)
+            return 1;
+        if (gnoi_interp_depth(interp, x, y) < 0)
+            return 0;
+    }
+    return 1;
+}
+
+int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last)
+{
+    const gnoi_frame_job *job = tile->job;
+    const gnoi_poly *poly = slot->receiver.poly;
+    gnoi_batch *b = &tile->batch;
+    common c;
+    if (last - first + 1 < LEAST_RUN || !is_plain(tile, slot, columns))
+        return 0;
+    c.x0 = tile->x0 + 0.5;
+    c.y0 = tile->y0 + row - 0.5;
+    c.view = &job->view;
+    c.nearness = &slot->receiver.nearness;
+    c.normal = poly->shading == GNO_SHADING_PHONG ? slot->interp.normal : NULL;
+    c.g = v3_scale(v3_from(poly->n), slot->receiver.side < 0 ? -1 : 1);
+    c.tone = &job->tones[poly->material];
+    for (int p = first; p <= last; p++)
+        if (!(tile->cells.length[p] > 0))
+            return 0;
+    if (c.normal && !seek(tile, slot, &c, first, last))
+        return 0;
+    for (int p = first; p <= last; p += STEP) {
+        if (b->count > GNOI_BATCH - STEP)
+            gnoi_tile_flush(tile);
+        if (job->view.orthographic)
+            set_far(b, b->count, &tile->cells, p, &c);
+        else
+            set_near(b, b->count, &tile->cells, p, &c);
+        set_rest(tile, columns, row, p, b->count);
+        b->count += last - p + 1 < STEP ? last - p + 1 : STEP;
+    }
+    if (b->count == GNOI_BATCH)
+        gnoi_tile_flush(tile);
+    return 1;
+}
