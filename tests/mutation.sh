@@ -7,7 +7,8 @@
 #
 # All happens in a copy of the tree under BUILD; the tree itself is never changed. A breakage is caught when a test fails, crashes or
 # does not end; what the first program does not see is tried with all the others until one fails.
-# Prints a line for each breakage and the tally; fails when one is not caught, or most are stale: lines that have changed. Needs what the tests need, and awk.
+# Prints a line for each breakage and the tally; fails when one is not caught, does not compile or is stale: its line has changed. Needs what
+# the tests need, and awk.
 # usage: mutation.sh BUILD LIST [WORD: only breakages of files with this word]
 # MUTATION_SECONDS: of processor time for one program (120). MUTATION_FIRST=1: only the program named first.
 set -u
@@ -75,4 +76,4 @@ while read -r file first <&3; do
     cp whole "$file"
 done 3< <(grep -v '^#' "$root/$list" | grep -v '^$')
 echo "mutation: $good of $total breakages caught, $stale stale"
-[ "$good" -eq "$total" ] && [ "$total" -gt "$stale" ]
+[ "$total" -gt 0 ] && [ "$good" -eq "$total" ] && [ "$stale" -eq 0 ]

@@ -9,7 +9,8 @@
 
 #include "shadow/parts.h"
 
-/* Flux of polygons first .. first+count-1 of a shape on the canvas: a valid shape, or one polygon with holes in it. 0 when memory fails. */
+/* Flux of polygons first .. first+count-1 of a shape on the canvas, whose rings do not cross: the outer one first, then its holes. 0 when
+ * memory fails. */
 int gnoi_flux_of(const gnoi_canvas *canvas, const gno_shape *shape, size_t first, size_t count, gnoi_cover *scratch, double *flux);
 
 /* Area of the union of everything that casts, in the same measure. */

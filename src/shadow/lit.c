@@ -63,16 +63,31 @@ static void add_moment(outcome *o, const gnoi_receiver_view *r, const gnoi_momen
     o->moment[2] += area * c.z;
 }
 
+/* Rings of an outline as it is may cross one another and themselves: the clipper makes polygons of them. */
+static gno_status flux_of_outline(gnoi_parter *p, const gnoi_receiver_view *r, double *flux)
+{
+    gno_shape simple = r->outline;
+    gno_status status = GNO_OK;
+    if (!r->convex) {
+        status = gnoi_parter_clip(p, GNO_CLIP_UNION, &r->outline, NULL, &p->work[0]);
+        simple = gnoi_shape_view(&p->work[0]);
+    }
+    if (!status && !gnoi_flux_of(&r->canvas, &simple, 0, simple.polygon_count, &p->cover, flux))
+        status = GNO_ERROR_MEMORY;
+    return status;
+}
+
 static gno_status all_lit(const job *j, gnoi_parter *p, const gnoi_receiver_view *r, outcome *o, gnoi_piece_list *list)
 {
     vec3 centroid = gnoi_canvas_point(&r->canvas, r->seen.x / r->seen.area, r->seen.y / r->seen.area);
+    gno_status status = GNO_OK;
     add_moment(o, r, &r->seen);
     if (j->certify && j->centre.lamp.directional)
         o->flux = r->seen.area * r->canvas.height;
-    else if (j->certify && !gnoi_flux_of(&r->canvas, &r->outline, 0, 1, &p->cover, &o->flux))
-        return GNO_ERROR_MEMORY;
-    if (!j->keep)
-        return GNO_OK;
+    else if (j->certify)
+        status = flux_of_outline(p, r, &o->flux);
+    if (status || !j->keep)
+        return status;
     return gnoi_piece_list_add_whole(list, &r->canvas, o->area, centroid) && gnoi_piece_list_add_light(list, j->light, undiminished)
                ? GNO_OK
                : GNO_ERROR_MEMORY;
