@@ -167,9 +167,9 @@ $(CALL_FAULTS): $(BUILD)/obj/tests/faults/call_faults.o $(SUPPORT_OBJ) $(STATIC)
 	@mkdir -p $(@D)
 	$(call run,LINK,$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
 
-$(COMMAND_FAULTS): $(BUILD)/obj/tests/faults/command_faults.o $(CLI_OBJ) $(STATIC)
+$(COMMAND_FAULTS): $(BUILD)/obj/tests/faults/command_faults.o $(BUILD)/obj/tests/support/places.o $(CLI_OBJ) $(STATIC)
 	@mkdir -p $(@D)
-	$(call run,LINK,$(LINK) $(FAULTY:%=-Wl$(comma)--wrap=%) $< $(CLI_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
+	$(call run,LINK,$(LINK) $(FAULTY:%=-Wl$(comma)--wrap=%) $(filter %.o,$^) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
 
 $(FUZZ_BIN): $(BUILD)/%: $(BUILD)/obj/%.o $(BUILD)/obj/tests/fuzz/fuzz.o $(filter %.o,$(FUZZ_DRIVER)) $(STATIC)
 	@mkdir -p $(@D)
@@ -230,15 +230,18 @@ VIEWS ?= 10000
 watertight: $(BUILD)/tests/property/test_watertight
 	@GNOMON_VIEWS=$(VIEWS) $<
 
-# Failing memory, files and disks, signals: every fault of every call and command, under the sanitizers and the leak checker.
+# Failing memory, files and disks, signals: every fault of every call and command; then, under the sanitizers and the leak checker, every
+# allocation of every call again, and each place in the program where a command allocates or asks for a file.
+FAULT_BUILDS = $(CALL_FAULTS) $(COMMAND_FAULTS) $(BUILD)/gnomon $(BUILD)/tests/robustness/test_faults
 .PHONY: faults faults-run
 faults:
+	+@$(SUBMAKE) $(JOBS) FAULTS=full EACH=1 faults-run
 	+@$(SUBMAKE) $(JOBS) BUILD=build/asan CFLAGS='-O1 -g -fno-omit-frame-pointer' \
-	  SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=all' faults-run
+	  SANITIZE='-fsanitize=address,undefined -fno-sanitize-recover=all' FAULTS=places EACH=places faults-run
 
-faults-run: $(CALL_FAULTS) $(COMMAND_FAULTS) $(BUILD)/gnomon $(BUILD)/tests/robustness/test_faults
-	@BUILD='$(BUILD)' bash tests/faults/faults.sh full
-	@GNOMON_FAULTS=1 $(BUILD)/tests/robustness/test_faults
+faults-run: $(FAULT_BUILDS)
+	@BUILD='$(BUILD)' bash tests/faults/faults.sh $(FAULTS)
+	@GNOMON_FAULTS=$(EACH) $(BUILD)/tests/robustness/test_faults
 
 # Huge counts, coordinates, polygons, piles, lights and pictures: time, peak memory and outcome of each. HOSTILE_CASE: a part of a name.
 .PHONY: hostile

@@ -4,12 +4,13 @@
  *   KIND   memory  every STEP-th allocation of the tool and its libraries fails, once alone and from there on for good
  *          files   every STEP-th call that opens, reads, writes, syncs, renames or closes a file fails, and as many writes are cut short
  *          signals STEP times SIGINT and STEP times SIGKILL, at moments spread over the run
+ *   FAULT_PLACES=FILE in the environment: of memory and files each place (support/places.h) once; FILE keeps those that were tried
  *   OUTPUT the file that ARGUMENTS make, in the present folder; "-" is standard output
  *
  * Place: tests. Linked with the tool's own objects; the linker sends their calls of malloc, write and so on to the functions below (--wrap).
  * Each run is a child process. A fault is well taken when the run ends with status 1 and a message, or does without; the output is absent,
- * or as of an undisturbed run (or made without a material or texture, with a warning); and nothing is left beside it (SIGKILL may leave the temporary file, never the output half done). The
- * leak checker, where it is linked in, ends a run that leaks with another status.
+ * or as of an undisturbed run (or made without a material or texture, with a warning); and nothing is left beside it (SIGKILL may leave
+ * the temporary file, never the output half done). The leak checker, where it is linked in, ends a run that leaks with another status.
  */
 #define _GNU_SOURCE
 #include <dirent.h>
@@ -27,6 +28,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "support/places.h"
+
 int __real_main(int argc, char **argv);
 int __wrap_main(int argc, char **argv);
 
@@ -41,8 +44,16 @@ typedef struct plan {
     unsigned long counted[3];
 } plan;
 
-static plan *board; /* shared with the children */
-static plan *now;   /* the same within the tool; NULL elsewhere, where nothing fails */
+enum { MOST = 20000 }; /* calls of one kind whose places are noted */
+
+/* Shared with the children. */
+static struct shared {
+    plan plan;
+    int note; /* the places of a run without faults */
+    uint64_t place[3][MOST];
+} *board;
+
+static plan *now; /* the same plan within the tool; NULL elsewhere, where nothing fails */
 
 static int fails(fault_kind kind)
 {
@@ -51,6 +62,12 @@ static int fails(fault_kind kind)
         return 0;
     }
     n = ++now->counted[kind];
+    if (board->note && n <= MOST) {
+        plan *here = now;
+        now = NULL; /* looking may take memory */
+        board->place[kind][n - 1] = place_here();
+        now = here;
+    }
     return now->kind == kind && now->fail_at > 0 && (n == now->fail_at || (now->for_good && n > now->fail_at));
 }
 
@@ -196,7 +213,7 @@ static pid_t start(const run *r, const plan *how)
 {
     pid_t child;
     unlink(r->output);
-    *board = *how;
+    board->plan = *how;
     fflush(stdout);
     child = fork();
     if (child == 0) {
@@ -207,7 +224,7 @@ static pid_t start(const run *r, const plan *how)
             argv[i] = strdup(r->argv[i]);
         }
         alarm(SECONDS);
-        now = board;
+        now = &board->plan;
         const int status = __real_main(r->argc, argv);
         now = NULL;
         for (int i = 0; i < r->argc; i++) {
@@ -330,7 +347,10 @@ static void undisturbed(run *r)
 {
     const plan none = {NONE, 0, 0, 0, {0, 0, 0}};
     const double begun = clock_now();
-    const int status = finish(start(r, &none));
+    int status;
+    board->note = 1;
+    status = finish(start(r, &none));
+    board->note = 0;
     r->seconds = clock_now() - begun;
     r->good = contents(r->output, &r->good_size);
     if (status != 0 || r->good == NULL || r->good_size == 0) {
@@ -339,16 +359,35 @@ static void undisturbed(run *r)
     }
 }
 
+/* Reads the places tried by runs before, or writes them. */
+static void keep_places(const char *path, places *seen, const char *mode)
+{
+    FILE *file = path != NULL ? fopen(path, mode) : NULL;
+    if (file != NULL && (mode[0] == 'r' ? fread(seen, sizeof *seen, 1, file) : fwrite(seen, sizeof *seen, 1, file)) != 1) {
+        exit(3);
+    }
+    if (file != NULL) {
+        fclose(file);
+    }
+}
+
 static int fault_runs(run *r, fault_kind kind, unsigned long step, unsigned long *faults)
 {
-    const unsigned long all = board->counted[kind];
+    static places seen;
+    const char *path = getenv("FAULT_PLACES");
+    const unsigned long all = board->plan.counted[kind];
     int wrong = 0;
+    keep_places(path, &seen, "rb");
     for (unsigned long at = 1; at <= all; at += step) {
+        if (path != NULL && at <= MOST && places_visit(&seen, board->place[kind][at - 1]) > 0) {
+            continue;
+        }
         for (int way = 0; way < 2; way++, ++*faults) {
             const plan p = {kind, at, kind == MEMORY && way, kind == FILES && way, {0, 0, 0}};
             wrong += judge(r, finish(start(r, &p)));
         }
     }
+    keep_places(path, &seen, "wb");
     return wrong;
 }
 

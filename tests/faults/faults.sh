@@ -1,7 +1,9 @@
 #!/bin/bash
 # Faults of every kind, counted: allocations of every public call and command, calls for files of every command, full disks, closed
 # pipes, files that vanish, signals at random moments. Prints a PASS, FAIL or SKIP line for each, and the sums.
-# usage: faults.sh quick|full    BUILD: where the programs are (build)
+# usage: faults.sh quick|places|full    BUILD: where the programs are (build)
+#   full: each allocation and call for a file by count; places: of commands, each place of the program that makes them, once, and fewer
+#   signals, which do not depend on sanitizers; quick: a few
 set -u
 root=$PWD
 build=$(cd "${BUILD:-build}" && pwd)
@@ -11,8 +13,10 @@ trap 'rm -rf "$work"' EXIT
 cp "$root"/scenes/house.yaml "$root"/scenes/town.yaml "$root"/scenes/*.obj "$root"/scenes/*.mtl "$work"
 cp -r "$root"/scenes/textures "$work"
 cd "$work" || exit 1
-case ${1:-quick} in
+mode=${1:-quick}
+case $mode in
 full) each_call=1 each_allocation=1 each_file=1 signals=200 ;;
+places) each_call=1 each_allocation=1 each_file=1 signals=10 ;;
 *) each_call=13 each_allocation=61 each_file=9 signals=3 ;;
 esac
 export ASAN_OPTIONS=exitcode=77:${ASAN_OPTIONS:-} UBSAN_OPTIONS=exitcode=77:print_stacktrace=1:${UBSAN_OPTIONS:-}
@@ -67,6 +71,7 @@ kind() { # name, STEP
     for output in "${outputs[@]}"; do
         read -r file arguments <<<"$output"
         # shellcheck disable=SC2086
+        [ "$mode" != places ] || export FAULT_PLACES=$work/places.$1
         count < <("$commands" "$1" "$2" "$file" -- $arguments 2>&1 || echo "FAIL faults: $1 of gnomon $arguments")
     done
     echo "faults: $1 of commands: $((total - before))"

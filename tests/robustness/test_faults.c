@@ -2,7 +2,8 @@
  * back, nothing leaks, and the same call on the same scene gives its full result afterwards.
  * Two ways to fail: one allocation alone, so that whoever takes no notice of it goes on to work with nothing; or it and all that come
  * after it. A call may do without memory that it only would have liked to have, but then its result is the whole one.
- * GNOMON_FAULTS=1: every allocation of every call on every kind of scene; else a few of each, the same ones every time.
+ * GNOMON_FAULTS=1: every allocation of every call on every kind of scene; =places: each place (support/places.h) where a call allocates, on
+ * the first kind of scene that comes there; else a few of each, the same ones every time.
  */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -11,6 +12,7 @@
 
 #include <cmocka.h>
 
+#include "support/places.h"
 #include "support/random_scene.h"
 
 #include <gnomon/gnomon_matrix.h>
@@ -19,7 +21,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { WIDTH = 24, HEIGHT = 18, PIXELS = WIDTH * HEIGHT, LIGHTS = 64 };
+enum { WIDTH = 24, HEIGHT = 18, PIXELS = WIDTH * HEIGHT, LIGHTS = 64, MOST_PLACES = 5000 };
 
 /* ---- memory that fails -------------------------------------------------------------------------------------------------------- */
 
@@ -27,6 +29,8 @@ typedef struct faulty {
     size_t calls, fail_at; /* fail_at 0: never */
     int once;
     size_t held; /* bytes */
+    uint64_t *places; /* of calls from first_place on, for MOST_PLACES of them; NULL: not asked for */
+    size_t first_place;
 } faulty;
 
 static void *faulty_alloc(void *user, void *block, size_t old_size, size_t new_size)
@@ -39,6 +43,8 @@ static void *faulty_alloc(void *user, void *block, size_t old_size, size_t new_s
         return NULL;
     }
     f->calls++;
+    if (f->places && f->calls > f->first_place && f->calls <= f->first_place + MOST_PLACES)
+        f->places[f->calls - f->first_place - 1] = place_here();
     if (f->fail_at > 0 && (f->once ? f->calls == f->fail_at : f->calls >= f->fail_at)) return NULL;
     fresh = malloc(new_size); /* always a new place, so that stale pointers show */
     if (!fresh) return NULL;
@@ -252,10 +258,10 @@ typedef struct tally {
     size_t faults, refused, done_without;
 } tally;
 
-/* Lets allocation `at` of the call fail, or none; returns how many the call asked for. */
-static size_t make_call(const call *c, scene_kind kind, size_t at, int once, uint64_t *good, tally *sum)
+/* Lets allocation `at` of the call fail, or none and notes the places of all; returns how many the call asked for. */
+static size_t make_call(const call *c, scene_kind kind, size_t at, int once, uint64_t *good, uint64_t *found, tally *sum)
 {
-    faulty memory = {0, 0, 0, 0};
+    faulty memory = {0, 0, 0, 0, NULL, 0};
     gno_context_def def = gno_context_def_default();
     gno_context *context;
     gno_scene *scene;
@@ -268,6 +274,8 @@ static size_t make_call(const call *c, scene_kind kind, size_t at, int once, uin
     scene = random_scene(context, kind, 1, WIDTH, HEIGHT);
     assert_non_null(scene);
     before = memory.calls;
+    memory.first_place = before;
+    memory.places = at ? NULL : found;
     memory.fail_at = at ? before + at : 0;
     memory.once = once;
     status = c->make(scene, &digest);
@@ -295,23 +303,54 @@ static size_t make_call(const call *c, scene_kind kind, size_t at, int once, uin
     return before;
 }
 
+static void both_ways(const call *c, scene_kind kind, size_t at, int ways, uint64_t *good, tally *sum)
+{
+    make_call(c, kind, at, 1, good, NULL, sum);
+    if (ways == 2)
+        make_call(c, kind, at, 0, good, NULL, sum);
+}
+
+/* Each place of the call where it allocates that no scene before has shown. */
+static void try_places(const call *c, places *seen, tally *sum)
+{
+    static uint64_t found[MOST_PLACES];
+    memset(seen, 0, sizeof *seen);
+    for (int kind = 0; kind < SCENE_KINDS; kind++) {
+        uint64_t good = 0;
+        const size_t count = make_call(c, (scene_kind)kind, 0, 0, &good, found, sum);
+        assert_true(count <= MOST_PLACES);
+        for (size_t k = 1; k <= count; k++)
+            if (places_visit(seen, found[k - 1]) == 0)
+                both_ways(c, (scene_kind)kind, k, 2, &good, sum);
+    }
+}
+
+static void try_allocations(const call *c, int all, uint64_t *random, tally *sum)
+{
+    for (int kind = 0; kind < SCENE_KINDS; kind++) {
+        uint64_t good = 0;
+        const size_t count = make_call(c, (scene_kind)kind, 0, 0, &good, NULL, sum), tried = all ? count : count < 4 ? count : 4;
+        for (size_t k = 1; k <= tried; k++)
+            both_ways(c, (scene_kind)kind, all ? k : 1 + (size_t)(random_unit(random) * (double)count), all || k % 2 ? 2 : 1, &good, sum);
+    }
+}
+
 static void test_faults(void **state)
 {
+    static places seen;
     const char *text = getenv("GNOMON_FAULTS");
-    const int all = text && *text;
+    const int by_place = text && !strcmp(text, "places");
     tally sum = {0, 0, 0};
     uint64_t random = 7;
     (void)state;
-    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++)
-        for (int kind = 0; kind < SCENE_KINDS; kind++) {
-            uint64_t good = 0;
-            size_t count = make_call(&calls[i], (scene_kind)kind, 0, 0, &good, &sum), tried = all ? count : count < 4 ? count : 4;
-            for (size_t k = 1; k <= tried; k++) {
-                size_t at = all ? k : 1 + (size_t)(random_unit(&random) * (double)count);
-                make_call(&calls[i], (scene_kind)kind, at, 1, &good, &sum);
-                if (all || k % 2) make_call(&calls[i], (scene_kind)kind, at, 0, &good, &sum);
-            }
-        }
+    for (size_t i = 0; i < sizeof calls / sizeof *calls; i++) {
+        if (by_place)
+            try_places(&calls[i], &seen, &sum);
+        else
+            try_allocations(&calls[i], text && *text, &random, &sum);
+        if (text && *text)
+            print_message("faults: %s: %zu faults so far\n", calls[i].name, sum.faults);
+    }
     print_message("faults: %zu allocations made to fail in %zu calls on %d kinds of scenes: %zu refused, %zu done without\n", sum.faults,
                   sizeof calls / sizeof *calls, (int)SCENE_KINDS, sum.refused, sum.done_without);
     assert_true(sum.refused > 0 && sum.faults == sum.refused + sum.done_without);
