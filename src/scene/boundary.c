@@ -3,7 +3,7 @@
  * Most edges cancel, and so do all edges around most vertices. Every directed edge belongs to the lower of its two vertices: it adds a
  * pseudo-random number of the higher vertex there, or takes it away, by its direction. Where the sum is zero all edges of the vertex cancel
  * (by chance only once in 2^64 where they do not). The few edges of other vertices are listed, sorted by their vertices, and cancelled
- * against their reverses one by one.
+ * against their reverses one by one. Who knows where a boundary may run spares the sums.
  */
 #include "scene/boundary.h"
 #include "base/sort.h"
@@ -24,7 +24,8 @@ typedef struct finding {
     const gnoi_prepared *prep;
     const unsigned char *taken;
     size_t count;
-    uint64_t *sums; /* of vertices; NULL: all edges are listed */
+    uint64_t *sums; /* of vertices; NULL: not made */
+    const unsigned char *may_bound; /* of vertices; NULL: any may */
     size_t half_count, half_capacity;
     half_edge *halves;
 } finding;
@@ -60,7 +61,14 @@ static void add_edges(const finding *f, size_t i)
     }
 }
 
-/* Lists those edges of polygon i whose vertices do not cancel; 0 without memory. */
+static int is_inner(const finding *f, uint32_t low, uint32_t other)
+{
+    if (f->may_bound)
+        return !f->may_bound[low] || !f->may_bound[other];
+    return f->sums && f->sums[low] == 0;
+}
+
+/* Lists those edges of polygon i that are not known to cancel; 0 without memory. */
 static int list_edges(finding *f, size_t i)
 {
     uint32_t count;
@@ -68,7 +76,7 @@ static int list_edges(finding *f, size_t i)
     for (uint32_t k = 0; k < count; k++) {
         uint32_t v = corner[k], w = corner[k + 1 < count ? k + 1 : 0], low = v < w ? v : w;
         half_edge *h;
-        if (v == w || (f->sums && f->sums[low] == 0))
+        if (v == w || is_inner(f, low, v < w ? w : v))
             continue;
         if (!gnoi_reserve(f->context, (void **)&f->halves, &f->half_capacity, f->half_count + 1, sizeof *f->halves))
             return 0;
@@ -85,7 +93,7 @@ static int list_edges(finding *f, size_t i)
 static size_t next_taken(const finding *f, size_t i)
 {
     const unsigned char *found;
-    if (i >= f->count || f->taken[i])
+    if (i >= f->count || f->taken[i] == 1)
         return i;
     found = memchr(f->taken + i, 1, f->count - i);
     return found ? (size_t)(found - f->taken) : f->count;
@@ -94,8 +102,8 @@ static size_t next_taken(const finding *f, size_t i)
 static int list_halves(finding *f)
 {
     size_t some = 0;
-    for (size_t i = 0; i < f->count; i++)
-        some += f->taken[i];
+    for (size_t i = 0; i < f->count && !f->may_bound; i++)
+        some += f->taken[i] == 1;
     if (some > f->count / FEW) {
         f->sums = gnoi_calloc(f->context, f->prep->vertex_count, sizeof *f->sums);
         if (!f->sums)
@@ -168,9 +176,10 @@ static int cancel(const finding *f, const gnoi_keyed *order, gnoi_boundary *c)
     return 1;
 }
 
-int gnoi_boundary_find(gno_context *context, const gnoi_prepared *prep, const unsigned char *taken, size_t count, gnoi_boundary *boundary)
+int gnoi_boundary_find(gno_context *context, const gnoi_prepared *prep, const unsigned char *taken, size_t count,
+                       const unsigned char *may_bound, gnoi_boundary *boundary)
 {
-    finding f = {context, prep, taken, count, NULL, 0, 0, NULL};
+    finding f = {context, prep, taken, count, NULL, may_bound, 0, 0, NULL};
     gnoi_keyed *order = NULL;
     int good = list_halves(&f);
     gnoi_free(context, f.sums, prep->vertex_count, sizeof *f.sums);

@@ -18,8 +18,10 @@ typedef struct gnoi_boundary {
     gnoi_boundary_edge *edges;
 } gnoi_boundary;
 
-/* Appends the boundary of the polygons i < count with taken[i] (1 or 0). Returns 0 when memory fails; free it in any case. */
-int gnoi_boundary_find(gno_context *context, const gnoi_prepared *prep, const unsigned char *taken, size_t count, gnoi_boundary *boundary);
+/* Appends the boundary of the polygons i < count whose taken[i] is 1. may_bound: 1 for each vertex that may lie on it, or NULL. Returns 0
+ * when memory fails; free it in any case. */
+int gnoi_boundary_find(gno_context *context, const gnoi_prepared *prep, const unsigned char *taken, size_t count,
+                       const unsigned char *may_bound, gnoi_boundary *boundary);
 void gnoi_boundary_free(gno_context *context, gnoi_boundary *boundary);
 
 #endif

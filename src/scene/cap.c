@@ -199,7 +199,7 @@ gno_status gnoi_cap_solids(gno_scene *scene, const unsigned char *taken)
     work w;
     memset(&w, 0, sizeof w);
     w.scene = scene;
-    good = gnoi_boundary_find(context, prep, taken, prep->poly_count, &w.boundary);
+    good = gnoi_boundary_find(context, prep, taken, prep->poly_count, NULL, &w.boundary);
     w.sorted = gnoi_malloc(context, w.boundary.count, sizeof *w.sorted);
     w.openings = gnoi_calloc(context, parts, sizeof *w.openings);
     w.next = gnoi_malloc(context, vertices, sizeof *w.next);

@@ -84,6 +84,8 @@ typedef struct gnoi_prepared {
     uint32_t *chunk_vertex;     /* vertices before each: numbers from chunk_vertex[k] to chunk_vertex[k + 1] are first used in chunk k */
     size_t seam_count, seam_capacity;
     uint32_t *seams;            /* polygons that share a vertex with one of an earlier chunk, by rising number */
+    size_t joint_count, joint_capacity;
+    uint32_t *joints;           /* vertices of polygons without area, which close seams between others; some more than once */
     size_t solid_count;
     gnoi_solid *solids;         /* connected parts */
     uint32_t *vertex_solid;     /* the part that a vertex belongs to */

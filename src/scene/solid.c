@@ -280,18 +280,28 @@ static uint32_t vertex_at(const finding *f, size_t corner)
     return f->w->vertex_number[f->w->same[f->w->scene->corner_vertex[corner]]];
 }
 
-/* Polygons without area close seams. The edge between two scene corners. */
-static void add_seam(const finding *f, size_t from, size_t to, int open)
+static int add_joint(const finding *f, uint32_t vertex)
+{
+    gnoi_prepared *prep = f->prep;
+    if (!gnoi_reserve(f->context, (void **)&prep->joints, &prep->joint_capacity, prep->joint_count + 1, sizeof *prep->joints))
+        return 0;
+    prep->joints[prep->joint_count++] = vertex;
+    return 1;
+}
+
+/* Polygons without area close seams. The edge between two scene corners. 0 without memory. */
+static int add_seam(const finding *f, size_t from, size_t to, int open)
 {
     const uint32_t *vertex_solid = f->prep->vertex_solid;
     uint32_t v = vertex_at(f, from), w = vertex_at(f, to);
     tally *t;
     if (v == GNOI_NONE)
-        return;
+        return 1;
     t = &f->whole[vertex_solid[v]];
     t->open |= open || w == GNOI_NONE || vertex_solid[w] != vertex_solid[v];
     if (w != GNOI_NONE)
         t->sum += edge_number(v, w);
+    return add_joint(f, v);
 }
 
 static gno_status add_empty(const finding *f)
@@ -309,11 +319,13 @@ static gno_status add_empty(const finding *f)
         from = scene->ring_start[ring];
         to = scene->ring_start[ring + 1];
         for (unsigned i = from; i < to; i++)
-            add_seam(f, i, i + 1 < to ? i + 1 : from, scene->polygon_start[p + 1] != ring + 1);
+            if (!add_seam(f, i, i + 1 < to ? i + 1 : from, scene->polygon_start[p + 1] != ring + 1))
+                return GNO_ERROR_MEMORY;
     }
     for (size_t t = 0; t < w->splits.count; t++)
         for (int k = 0; k < 3 && !w->splits.has_area[t]; k++)
-            add_seam(f, w->splits.corner[t][k], w->splits.corner[t][(k + 1) % 3], 0);
+            if (!add_seam(f, w->splits.corner[t][k], w->splits.corner[t][(k + 1) % 3], 0))
+                return GNO_ERROR_MEMORY;
     return GNO_OK;
 }
 

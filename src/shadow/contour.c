@@ -6,23 +6,17 @@ static int collect_edges(const gno_scene *scene, const gnoi_casters *c, gnoi_box
 {
     for (size_t i = 0; i < c->contour.count; i++) {
         vec3 ends[2] = {v3_from(scene->prepared.positions[c->contour.edges[i].from]), v3_from(scene->prepared.positions[c->contour.edges[i].to])};
-        gnoi_lbox box[6];
-        int n = gnoi_frame_boxes(&c->rim.frame, ends, 2, box);
         if (!gnoi_boxes_reserve(boxes, 6))
             return 0;
-        for (int k = 0; k < n; k++) {
-            boxes->box[boxes->count] = box[k];
-            boxes->number[boxes->count++] = (uint32_t)i;
-        }
+        gnoi_boxes_take(boxes, (size_t)gnoi_frame_boxes(&c->rim.frame, ends, 2, boxes->box + boxes->count), (uint32_t)i);
     }
     return 1;
 }
 
 static gno_status build_rim(const gno_scene *scene, gnoi_casters *c)
 {
-    gnoi_boxes boxes = {0};
+    gnoi_boxes boxes = gnoi_boxes_make(scene->context);
     gno_status status = GNO_ERROR_MEMORY;
-    boxes.context = scene->context;
     c->rim.frame = c->far.frame;
     if (collect_edges(scene, c, &boxes))
         status = gnoi_tree_pack(scene->context, &boxes, NULL, &c->rim);
@@ -30,11 +24,12 @@ static gno_status build_rim(const gno_scene *scene, gnoi_casters *c)
     return status;
 }
 
-/* The far sides' boundary, turned so that they are to the left of it on the light's plane: those of solids wound inwards are not. */
-static int find_contour(const gno_scene *scene, const unsigned char *is_far, size_t count, gnoi_casters *c)
+/* The far sides' boundary, turned so that they are to the left of it on the light's plane: those of solids wound inwards are not. The
+ * edges of a closed solid cancel, so all do that lead to a vertex with far sides alone around it: no near side, no polygon without area. */
+static int find_contour(const gno_scene *scene, const unsigned char *sides, const unsigned char *near_by, size_t count, gnoi_casters *c)
 {
     const gnoi_prepared *prep = &scene->prepared;
-    if (!gnoi_boundary_find(scene->context, prep, is_far, count, &c->contour))
+    if (!gnoi_boundary_find(scene->context, prep, sides, count, near_by, &c->contour))
         return 0;
     for (size_t i = 0; i < c->contour.count; i++) {
         gnoi_boundary_edge *e = &c->contour.edges[i];
@@ -47,25 +42,21 @@ static int find_contour(const gno_scene *scene, const unsigned char *is_far, siz
     return 1;
 }
 
-static gno_status build_contour(const gno_scene *scene, gnoi_casters *c)
-{
-    const size_t count = scene->prepared.poly_count + scene->prepared.cap_count;
-    unsigned char *is_far = gnoi_calloc(scene->context, count, 1);
-    int good;
-    for (size_t i = 0; is_far && i < c->far.entry_count; i++)
-        is_far[c->far.caster[i]] = 1;
-    good = is_far && find_contour(scene, is_far, count, c);
-    gnoi_free(scene->context, is_far, count, 1);
-    return good ? build_rim(scene, c) : GNO_ERROR_MEMORY;
-}
-
 gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_casters *c)
 {
-    gno_status status;
+    const gnoi_prepared *prep = &scene->prepared;
+    const size_t count = prep->poly_count + prep->cap_count;
+    unsigned char *sides = gnoi_malloc(scene->context, count, 1), *near_by = gnoi_calloc(scene->context, prep->vertex_count, 1);
+    gno_status status = GNO_ERROR_MEMORY;
     memset(c, 0, sizeof *c);
-    status = gnoi_tree_build_casters(scene, lamp, halved, &c->single, &c->far);
+    for (size_t i = 0; near_by && i < prep->joint_count; i++)
+        near_by[prep->joints[i]] = 1;
+    if (sides && near_by)
+        status = gnoi_tree_build_casters(scene, lamp, halved, sides, near_by, &c->single, &c->far);
     if (!status && c->far.entry_count)
-        status = build_contour(scene, c);
+        status = find_contour(scene, sides, near_by, count, c) ? build_rim(scene, c) : GNO_ERROR_MEMORY;
+    gnoi_free(scene->context, sides, count, 1);
+    gnoi_free(scene->context, near_by, prep->vertex_count, 1);
     if (status)
         gnoi_casters_free(scene->context, c);
     return status;

@@ -74,17 +74,6 @@ static void box_add(gnoi_lbox *box, double u, double v, double z)
     box->z1 = fz > box->z1 ? fz : box->z1;
 }
 
-static void box_grow(gnoi_lbox *box, const gnoi_frame *frame)
-{
-    float s = (float)frame->slack, t = (float)frame->slack_depth;
-    box->u0 -= s;
-    box->v0 -= s;
-    box->u1 += s;
-    box->v1 += s;
-    box->z0 -= t;
-    box->z1 += t;
-}
-
 /* (u axis, v axis, depth) of a cube face: faces 0..5 look along +x, -x, +y, -y, +z, -z. */
 static vec3 to_face(vec3 q, int face)
 {
@@ -217,7 +206,7 @@ static int face_box(const gnoi_frame *frame, const vec3 *relative, int count, in
         else
             box_add(box, GNOI_FACE_STEP * face, 0, 0);
     }
-    box_grow(box, frame);
+    gnoi_box_grow(box, frame);
     return 1;
 }
 
@@ -226,7 +215,7 @@ void gnoi_frame_box(const gnoi_frame *frame, const gnoi_lpoint *located, int cou
     box_clear(box);
     for (int i = 0; i < count; i++)
         box_add(box, located[i].u, located[i].v, frame->parallel ? -located[i].q : 1 / located[i].q);
-    box_grow(box, frame);
+    gnoi_box_grow(box, frame);
 }
 
 int gnoi_frame_boxes(const gnoi_frame *frame, const vec3 *points, int count, gnoi_lbox boxes[6])

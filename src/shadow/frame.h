@@ -56,6 +56,18 @@ typedef struct gnoi_frame {
     double slack, slack_depth; /* by how much boxes grow on each side against rounding, in units of u and of depth */
 } gnoi_frame;
 
+/* By the slack against rounding. */
+static inline void gnoi_box_grow(gnoi_lbox *box, const gnoi_frame *frame)
+{
+    float s = (float)frame->slack, t = (float)frame->slack_depth;
+    box->u0 -= s;
+    box->v0 -= s;
+    box->u1 += s;
+    box->v1 += s;
+    box->z0 -= t;
+    box->z1 += t;
+}
+
 /* lower, upper: bounds of the scene. */
 gnoi_frame gnoi_frame_make(const gnoi_lamp *lamp, const double lower[3], const double upper[3]);
 

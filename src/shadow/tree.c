@@ -1,138 +1,58 @@
 /* tree.c -- see tree.h. */
 #include "shadow/tree.h"
-#include "base/sort.h"
+#include "base/fetch.h"
 #include <string.h>
 
-/* Classes of size, each this many times smaller than the one before. */
-#define SIZE_CLASSES 8
-#define CLASS_FACTOR (1.0f / 16)
-#define HILBERT_BITS 14
-
-/* ---- boxes ------------------------------------------------------------------------------------------------------ */
-
-int gnoi_boxes_reserve(gnoi_boxes *b, size_t more)
-{
-    return gnoi_reserve(b->context, (void **)&b->number, &b->number_capacity, b->count + more, sizeof *b->number) &&
-           gnoi_reserve(b->context, (void **)&b->box, &b->box_capacity, b->count + more, sizeof *b->box);
-}
-
-void gnoi_boxes_free(gnoi_boxes *b)
-{
-    gnoi_free(b->context, b->box, b->box_capacity, sizeof *b->box);
-    gnoi_free(b->context, b->number, b->number_capacity, sizeof *b->number);
-}
-
-int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS])
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    uint32_t first = poly->corner, end = prep->ring_corner[poly->ring + 1];
-    vec3 n = v3_from(poly->n), origin, e1, e2;
-    double lo[2] = {0, 0}, hi[2] = {0, 0};
-    if (end - first <= GNOI_FRAME_POINTS) {
-        for (uint32_t i = first; i < end; i++)
-            points[i - first] = v3_from(prep->positions[prep->corner_vertex[i]]);
-        return (int)(end - first);
-    }
-    origin = v3_from(prep->positions[prep->corner_vertex[first]]);
-    e1 = v3_unit(v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0)));
-    e2 = v3_cross(n, e1);
-    for (uint32_t i = first; i < end; i++) {
-        vec3 q = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
-        double s = v3_dot(q, e1), t = v3_dot(q, e2);
-        lo[0] = s < lo[0] ? s : lo[0];
-        hi[0] = s > hi[0] ? s : hi[0];
-        lo[1] = t < lo[1] ? t : lo[1];
-        hi[1] = t > hi[1] ? t : hi[1];
-    }
-    points[0] = v3_mad(v3_mad(origin, e1, lo[0]), e2, lo[1]);
-    points[1] = v3_mad(v3_mad(origin, e1, hi[0]), e2, lo[1]);
-    points[2] = v3_mad(v3_mad(origin, e1, hi[0]), e2, hi[1]);
-    points[3] = v3_mad(v3_mad(origin, e1, lo[0]), e2, hi[1]);
-    return 4;
-}
-
-int gnoi_halved_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_poly *poly)
-{
-    uint32_t solid = gnoi_solid_of(&scene->prepared, poly);
-    double side;
-    if (!halved || !halved[solid])
-        return 0;
-    side = gnoi_lamp_side(lamp, poly->n, poly->d);
-    return (scene->prepared.solids[solid].outwards ? side > 0 : side < 0) ? -1 : 1;
-}
-
-static int casts(const gno_scene *scene, const gnoi_poly *poly)
-{
-    const double *t = scene->materials[poly->material].transmission;
-    return !poly->detail && (poly->opaque || !(t[0] >= 1 && t[1] >= 1 && t[2] >= 1));
-}
-
-/* Appends the boxes of prepared polygon i. */
-static int add_boxes(const gno_scene *scene, const gnoi_frame *frame, size_t i, gnoi_boxes *b)
-{
-    const gnoi_poly *poly = &scene->prepared.polys[i];
-    vec3 points[GNOI_FRAME_POINTS];
-    size_t n;
-    if (!gnoi_boxes_reserve(b, 6))
-        return 0;
-    n = (size_t)gnoi_frame_boxes(frame, points, gnoi_poly_hull(scene, poly, points), b->box + b->count);
-    for (size_t k = 0; k < n; k++)
-        b->number[b->count++] = (uint32_t)i;
-    return 1;
-}
-
-static int collect_boxes(const gno_scene *scene, gnoi_tree_part part, const gnoi_frame *frame, gnoi_boxes *b)
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    for (size_t i = 0; i < prep->poly_count; i++)
-        if (((part == GNOI_TREE_SEEN || casts(scene, &prep->polys[i])) && !add_boxes(scene, frame, i, b)) || gnoi_stopped_at(scene->context, i))
-            return 0;
-    return 1;
-}
-
-/* Single casters and far sides apart. */
-static int collect_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_frame *frame,
-                           gnoi_boxes *single, gnoi_boxes *far)
-{
-    const gnoi_prepared *prep = &scene->prepared;
-    const size_t count = prep->poly_count + (halved ? prep->cap_count : 0);
-    for (size_t i = 0; i < count; i++) {
-        const gnoi_poly *poly = &prep->polys[i];
-        int side = gnoi_halved_side(scene, lamp, halved, poly);
-        if (side < 0 || !casts(scene, poly) || (i >= prep->poly_count && side == 0))
-            continue;
-        if (!add_boxes(scene, frame, i, side > 0 ? far : single) || gnoi_stopped_at(scene->context, i))
-            return 0;
-    }
-    return 1;
-}
+#define AHEAD 16 /* boxes */
 
 /* ---- order ------------------------------------------------------------------------------------------------------ */
 
-static float box_size(const gnoi_lbox *b)
+/* Classes of size: each holds boxes 16 times smaller than the one before, by the binary exponent of the longer side. */
+#define SIZE_CLASSES 8
+#define CLASS_OCTAVES 4
+#define MOST_BITS 8 /* of a cell's coordinate */
+
+/* What is known of the boxes of one class. */
+typedef struct size_range {
+    float lo[2], hi[2], scale[2]; /* of the sums of both sides */
+    uint32_t first;               /* of its cells */
+    int used;
+} size_range;
+
+/* Boxes are put into cells along a Hilbert curve, those of a cell in the order in which they come: polygons that lie together. */
+typedef struct ordering {
+    const gnoi_boxes *boxes;
+    size_range range[SIZE_CLASSES];
+    unsigned bits;      /* of a cell's coordinates */
+    uint32_t *cell;     /* of each box: its class, then its cell */
+    size_t cell_count;
+    uint32_t *place;    /* of each cell: how many boxes, then where the next one goes */
+    uint32_t *order;
+} ordering;
+
+static int exponent(float x)
 {
-    float du = b->u1 - b->u0, dv = b->v1 - b->v0;
-    return du > dv ? du : dv;
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    return (int)(bits >> 23 & 255);
 }
 
-/* 0 for boxes about as large as the whole, one more for each CLASS_FACTOR below it. */
-static unsigned size_class(float size, float whole)
+/* 0 for boxes about as large as the whole. */
+static unsigned size_class(const gnoi_lbox *b, int whole)
 {
-    unsigned c = 0;
-    for (float s = whole * CLASS_FACTOR; c < SIZE_CLASSES - 1 && size < s; s *= CLASS_FACTOR)
-        c++;
-    return c;
+    int below = (whole - exponent(gnoi_box_side(b))) / CLASS_OCTAVES;
+    return below < 0 ? 0 : below < SIZE_CLASSES ? (unsigned)below : SIZE_CLASSES - 1;
 }
 
 /* Place of a cell along the Hilbert curve. The table takes two bits of each coordinate at a step: entry 16 state + 4 x + y holds
  * four bits of the place and, above them, the next state (the curve's four orientations). */
-static uint32_t hilbert(uint32_t x, uint32_t y)
+static uint32_t hilbert(uint32_t x, uint32_t y, unsigned bits)
 {
     static const unsigned char step[64] = {
         0, 51, 20, 5, 17, 18, 39, 6, 46, 45, 24, 9, 15, 60, 43, 10, 16, 1, 62, 31, 35, 2, 61, 44, 4, 55, 8, 59, 21, 22, 25, 26,
         42, 41, 38, 37, 11, 56, 7, 52, 28, 13, 50, 19, 47, 14, 49, 32, 58, 27, 12, 63, 57, 40, 29, 30, 54, 23, 34, 33, 53, 36, 3, 48};
     uint32_t state = 0, place = 0;
-    for (int shift = HILBERT_BITS - 2; shift >= 0; shift -= 2) {
+    for (int shift = (int)bits - 2; shift >= 0; shift -= 2) {
         unsigned entry = step[16 * state + 4 * (x >> shift & 3) + (y >> shift & 3)];
         place = place << 4 | (entry & 15);
         state = entry >> 4;
@@ -140,56 +60,90 @@ static uint32_t hilbert(uint32_t x, uint32_t y)
     return place;
 }
 
-static uint32_t quantise(float x, float lo, float scale)
+static uint32_t quantise(float x, float lo, float scale, float top)
 {
     float q = (x - lo) * scale;
-    float top = (float)((1 << HILBERT_BITS) - 1);
     return (uint32_t)(q < 0 ? 0 : q > top ? top : q);
 }
 
-/* 0 when stopped. */
-static int order_boxes(const gnoi_boxes *b, gnoi_keyed *keys)
+static void set_classes(ordering *o)
 {
-    float lo[SIZE_CLASSES][2], hi[SIZE_CLASSES][2], scale[SIZE_CLASSES][2];
-    float whole_lo[2] = {FLT_MAX, FLT_MAX}, whole_hi[2] = {-FLT_MAX, -FLT_MAX}, whole;
-    for (size_t i = 0; i < b->count; i++) {
-        const gnoi_lbox *x = &b->box[i];
-        whole_lo[0] = x->u0 < whole_lo[0] ? x->u0 : whole_lo[0];
-        whole_lo[1] = x->v0 < whole_lo[1] ? x->v0 : whole_lo[1];
-        whole_hi[0] = x->u1 > whole_hi[0] ? x->u1 : whole_hi[0];
-        whole_hi[1] = x->v1 > whole_hi[1] ? x->v1 : whole_hi[1];
+    const gnoi_boxes *b = o->boxes;
+    const int whole = exponent(gnoi_box_side(&b->whole));
+    for (int c = 0; c < SIZE_CLASSES; c++) {
+        o->range[c].lo[0] = o->range[c].lo[1] = FLT_MAX;
+        o->range[c].hi[0] = o->range[c].hi[1] = -FLT_MAX;
+        o->range[c].used = 0;
     }
-    whole = whole_hi[0] - whole_lo[0] > whole_hi[1] - whole_lo[1] ? whole_hi[0] - whole_lo[0] : whole_hi[1] - whole_lo[1];
-    for (int c = 0; c < SIZE_CLASSES; c++)
-        for (int k = 0; k < 2; k++) {
-            lo[c][k] = FLT_MAX;
-            hi[c][k] = -FLT_MAX;
-        }
     for (size_t i = 0; i < b->count; i++) {
-        const gnoi_lbox *x = &b->box[i];
-        unsigned c = size_class(box_size(x), whole);
-        float u = x->u0 + x->u1, v = x->v0 + x->v1;
-        keys[i].key = c;
-        lo[c][0] = u < lo[c][0] ? u : lo[c][0];
-        lo[c][1] = v < lo[c][1] ? v : lo[c][1];
-        hi[c][0] = u > hi[c][0] ? u : hi[c][0];
-        hi[c][1] = v > hi[c][1] ? v : hi[c][1];
+        unsigned c = size_class(&b->box[i], whole);
+        size_range *r = &o->range[c];
+        float u = b->box[i].u0 + b->box[i].u1, v = b->box[i].v0 + b->box[i].v1;
+        o->cell[i] = c;
+        r->lo[0] = u < r->lo[0] ? u : r->lo[0];
+        r->lo[1] = v < r->lo[1] ? v : r->lo[1];
+        r->hi[0] = u > r->hi[0] ? u : r->hi[0];
+        r->hi[1] = v > r->hi[1] ? v : r->hi[1];
+        r->used = 1;
     }
-    for (int c = 0; c < SIZE_CLASSES; c++)
-        for (int k = 0; k < 2; k++) {
-            float extent = hi[c][k] - lo[c][k];
-            scale[c][k] = extent > 0 ? (float)((1 << HILBERT_BITS) - 1) / extent : 0;
-        }
+    for (int c = 0; c < SIZE_CLASSES; c++) {
+        size_range *r = &o->range[c];
+        for (int k = 0; k < 2 && r->used; k++)
+            r->scale[k] = r->hi[k] > r->lo[k] ? (float)((1 << o->bits) - 1) / (r->hi[k] - r->lo[k]) : 0;
+        r->first = (uint32_t)o->cell_count;
+        o->cell_count += r->used ? (size_t)1 << 2 * o->bits : 0;
+    }
+}
+
+static void set_cells(ordering *o)
+{
+    const gnoi_boxes *b = o->boxes;
+    const float top = (float)((1 << o->bits) - 1);
     for (size_t i = 0; i < b->count; i++) {
+        const size_range *r = &o->range[o->cell[i]];
         const gnoi_lbox *x = &b->box[i];
-        uint32_t c = keys[i].key;
-        uint32_t qu = quantise(x->u0 + x->u1, lo[c][0], scale[c][0]), qv = quantise(x->v0 + x->v1, lo[c][1], scale[c][1]);
-        keys[i].key = c << (2 * HILBERT_BITS) | hilbert(qu, qv);
-        keys[i].value = (uint32_t)i;
-        if (gnoi_stopped_at(b->context, i))
-            return 0;
+        uint32_t u = quantise(x->u0 + x->u1, r->lo[0], r->scale[0], top), v = quantise(x->v0 + x->v1, r->lo[1], r->scale[1], top);
+        o->cell[i] = r->first + hilbert(u, v, o->bits);
+        o->place[o->cell[i]]++;
     }
-    return 1;
+}
+
+static void set_order(ordering *o)
+{
+    uint32_t sum = 0;
+    for (size_t c = 0; c < o->cell_count; c++) {
+        uint32_t n = o->place[c];
+        o->place[c] = sum;
+        sum += n;
+    }
+    for (size_t i = 0; i < o->boxes->count; i++)
+        o->order[o->place[o->cell[i]]++] = (uint32_t)i;
+}
+
+/* The order of the boxes, for gnoi_free; NULL without memory, or when stopped. */
+static uint32_t *order_boxes(const gnoi_boxes *b)
+{
+    gno_context *context = b->context;
+    ordering o;
+    memset(&o, 0, sizeof o);
+    o.boxes = b;
+    for (o.bits = 2; o.bits < MOST_BITS && (size_t)1 << 2 * o.bits < b->count; o.bits += 2)
+        ;
+    o.order = gnoi_malloc(context, b->count, sizeof *o.order);
+    o.cell = gnoi_malloc(context, b->count, sizeof *o.cell);
+    if (o.cell)
+        set_classes(&o);
+    o.place = gnoi_calloc(context, o.cell_count, sizeof *o.place);
+    if (o.order && o.cell && o.place && !gnoi_stopped(context)) {
+        set_cells(&o);
+        set_order(&o);
+    } else {
+        gnoi_free(context, o.order, b->count, sizeof *o.order);
+        o.order = NULL;
+    }
+    gnoi_free(context, o.cell, b->count, sizeof *o.cell);
+    gnoi_free(context, o.place, o.cell_count, sizeof *o.place);
+    return o.order;
 }
 
 /* ---- packing ---------------------------------------------------------------------------------------------------- */
@@ -210,14 +164,22 @@ static void plan_levels(gnoi_tree *tree)
 
 static size_t leaf_count(const gnoi_tree *tree) { return (tree->entry_count + GNOI_TREE_FAN - 1) / GNOI_TREE_FAN; }
 
-/* 0 when stopped. */
-static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, const gnoi_keyed *keys)
+/* Slots that no box takes: in the last node of each level. */
+static void clear_ends(gnoi_tree *tree)
 {
-    for (size_t i = 0; i < tree->node_count; i++)
-        gnoi_eight_clear(&tree->nodes[i]);
+    for (int level = 0; level < tree->levels; level++)
+        gnoi_eight_clear(&tree->nodes[level + 1 < tree->levels ? tree->level_first[level + 1] - 1 : tree->node_count - 1]);
+}
+
+/* 0 when stopped. */
+static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, const uint32_t *order)
+{
+    clear_ends(tree);
     for (size_t i = 0; i < tree->entry_count; i++) {
-        tree->caster[i] = b->number[keys[i].value];
-        gnoi_eight_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, &b->box[keys[i].value]);
+        if (i + AHEAD < tree->entry_count)
+            FETCH(&b->box[order[i + AHEAD]]);
+        tree->caster[i] = b->number[order[i]];
+        gnoi_eight_set(&tree->nodes[i / GNOI_TREE_FAN], i % GNOI_TREE_FAN, &b->box[order[i]]);
     }
     for (size_t i = 0, n = tree->entry_count; tree->leaves && i < leaf_count(tree); i++) {
         size_t first = i * GNOI_TREE_FAN, count = n - first < GNOI_TREE_FAN ? n - first : GNOI_TREE_FAN;
@@ -237,57 +199,16 @@ static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, c
 
 gno_status gnoi_tree_pack(gno_context *context, const gnoi_boxes *b, const gno_scene *scene, gnoi_tree *tree)
 {
-    gnoi_keyed *keys;
+    uint32_t *order = order_boxes(b);
     int good;
     tree->entry_count = b->count;
     plan_levels(tree);
     tree->caster = gnoi_malloc(context, b->count, sizeof *tree->caster);
     tree->nodes = gnoi_malloc(context, tree->node_count, sizeof *tree->nodes);
     tree->leaves = scene ? gnoi_malloc(context, leaf_count(tree), sizeof *tree->leaves) : NULL;
-    keys = gnoi_malloc(context, 2 * b->count, sizeof *keys);
-    good = tree->caster && tree->nodes && (tree->leaves || !scene) && keys;
-    if (good) {
-        good = order_boxes(b, keys);
-    }
-    if (good) {
-        gnoi_sort(keys, keys + b->count, b->count);
-        good = !gnoi_stopped(context) && fill(context, scene, tree, b, keys);
-    }
-    gnoi_free(context, keys, 2 * b->count, sizeof *keys);
+    good = order && tree->caster && tree->nodes && (tree->leaves || !scene) && fill(context, scene, tree, b, order);
+    gnoi_free(context, order, b->count, sizeof *order);
     return good ? GNO_OK : GNO_ERROR_MEMORY;
-}
-
-gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, gnoi_tree_part part, gnoi_tree *tree)
-{
-    gnoi_boxes b = {0};
-    gno_status status = GNO_ERROR_MEMORY;
-    memset(tree, 0, sizeof *tree);
-    b.context = scene->context;
-    tree->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
-    if (collect_boxes(scene, part, &tree->frame, &b))
-        status = gnoi_tree_pack(scene->context, &b, scene, tree);
-    gnoi_boxes_free(&b);
-    if (status)
-        gnoi_tree_free(scene->context, tree);
-    return status;
-}
-
-gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *single,
-                                   gnoi_tree *far)
-{
-    gnoi_boxes boxes[2] = {{0}, {0}};
-    gno_status status = GNO_ERROR_MEMORY;
-    memset(single, 0, sizeof *single);
-    memset(far, 0, sizeof *far);
-    boxes[0].context = boxes[1].context = scene->context;
-    single->frame = far->frame = gnoi_frame_make(lamp, scene->prepared.lower, scene->prepared.upper);
-    if (collect_casters(scene, lamp, halved, &single->frame, &boxes[0], &boxes[1]))
-        status = gnoi_tree_pack(scene->context, &boxes[0], scene, single);
-    gnoi_boxes_free(&boxes[0]);
-    if (!status)
-        status = gnoi_tree_pack(scene->context, &boxes[1], NULL, far);
-    gnoi_boxes_free(&boxes[1]);
-    return status;
 }
 
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree)

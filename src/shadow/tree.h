@@ -1,7 +1,7 @@
 /* tree.h -- a packed tree of the casters' boxes on one light's plane: the sparse rows of the shadow matrix.
  *
  * Place in the data flow: prepared polygons -> boxes on the light's plane (frame.h) -> this tree -> candidate casters of
- * a group of receivers (gather.h). Built without comparing pairs: boxes are sorted by size class and Hilbert number and packed eight
+ * a group of receivers (gather.h). Built without comparing pairs: boxes are sorted by size class and cell along a Hilbert curve and packed eight
  * to a node, level by level (after Kamel and Faloutsos, "On packing R-trees", 1993; the size classes keep large polygons from
  * spoiling the nodes of small ones). Beside each lowest node its triangles' corners may lie, so that most candidates are ruled
  * out without touching the scene.
@@ -33,7 +33,23 @@ typedef struct gnoi_boxes {
     size_t count, box_capacity, number_capacity;
     gnoi_lbox *box;
     uint32_t *number;
+    gnoi_lbox whole; /* u and v of all of them */
 } gnoi_boxes;
+
+gnoi_boxes gnoi_boxes_make(gno_context *context);
+
+/* Takes in the `n` boxes that lie behind the last one, where there is room for them; all are of `number`. */
+static inline void gnoi_boxes_take(gnoi_boxes *b, size_t n, uint32_t number)
+{
+    for (; n > 0; n--) {
+        const gnoi_lbox *box = &b->box[b->count];
+        b->whole.u0 = box->u0 < b->whole.u0 ? box->u0 : b->whole.u0;
+        b->whole.u1 = box->u1 > b->whole.u1 ? box->u1 : b->whole.u1;
+        b->whole.v0 = box->v0 < b->whole.v0 ? box->v0 : b->whole.v0;
+        b->whole.v1 = box->v1 > b->whole.v1 ? box->v1 : b->whole.v1;
+        b->number[b->count++] = number;
+    }
+}
 
 int gnoi_boxes_reserve(gnoi_boxes *boxes, size_t more); /* 0 when memory fails */
 void gnoi_boxes_free(gnoi_boxes *boxes);
@@ -50,16 +66,22 @@ typedef enum gnoi_tree_part {
 /* With leaves. */
 gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, gnoi_tree_part part, gnoi_tree *tree);
 
+/* What becomes of a polygon in the casters' trees. */
+typedef enum gnoi_caster_side {
+    GNOI_CASTS_NOT, /* lets all light through */
+    GNOI_CASTS_FAR, /* = 1, as gnoi_boundary_find wants: a far side of a halved solid */
+    GNOI_CASTS,     /* belongs to no halved solid */
+    GNOI_CASTS_NEAR /* a near side of a halved solid: nothing */
+} gnoi_caster_side;
+
 /* Builds two trees of casters: the far sides of halved solids, without leaves, and whatever belongs to no halved solid. `halved` (one
  * for each solid, or NULL: none is) tells of which solids the polygons facing one way are enough: where eye and lamp are both
  * outside a closed solid, every path from the lamp to a point in sight crosses as many of its polygons outwards as inwards, so the
- * far sides cast the whole shadow. The trees are to be freed in any case. */
-gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_tree *single,
-                                   gnoi_tree *far);
+ * far sides cast the whole shadow. The trees are to be freed in any case. Left behind: sides, a gnoi_caster_side for each polygon and each cap;
+ * near_by, 1 for each vertex of a near side. */
+gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, unsigned char *sides,
+                                   unsigned char *near_by, gnoi_tree *single, gnoi_tree *far);
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree);
-
-/* 1 for a far side, -1 for a near side of a halved solid, 0 for any other polygon. */
-int gnoi_halved_side(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, const gnoi_poly *poly);
 
 /* A growing list of polygon numbers. */
 typedef struct gnoi_list {

@@ -491,7 +491,7 @@ static void check_boundary(const gno_scene *s, uint64_t seed)
     for (size_t i = 0; i < q->poly_count; i++)
         taken[i] = (i / share + seed) % 2 != 0;
     n = list_edges(q, taken, edges);
-    assert_int_equal(gnoi_boundary_find(s->context, q, taken, q->poly_count, &boundary), 1);
+    assert_int_equal(gnoi_boundary_find(s->context, q, taken, q->poly_count, NULL, &boundary), 1);
     found = calloc(boundary.count + 1, sizeof *found);
     assert_non_null(found);
     for (size_t i = 0; i < boundary.count; i++) {
