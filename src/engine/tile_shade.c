@@ -5,6 +5,7 @@
  * A texture is taken once for each pixel of a surface, filtered over the whole pixel, and is a factor on all of the pixel's samples.
  */
 #include "engine/tile.h"
+#include "base/vector.h"
 #include <string.h>
 
 static int is_precomputed(const gnoi_slot *slot)
@@ -18,9 +19,10 @@ static int is_precomputed(const gnoi_slot *slot)
 #define EVEN_MOST 4.0f
 
 /* 1 where there is no mean. */
-static float even_factor(float mean, float texel)
+static inline float even_factor(float mean, float texel)
 {
-    float factor = mean > 0 ? (mean + EVEN_FLOOR) / (texel + EVEN_FLOOR) : 1;
+    float some = (float)(mean > 0), factor = (mean + EVEN_FLOOR) / ((texel > 0 ? texel : 0) + EVEN_FLOOR);
+    factor = some * factor + (1 - some);
     return factor < EVEN_MOST ? factor : EVEN_MOST;
 }
 
@@ -43,21 +45,32 @@ static void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], cons
 
 #define NO_TEXEL UINT16_MAX
 
+typedef float texel_values[3][GNOI_BATCH];
+
+VECTOR_CLONES static void multiply(gnoi_batch *restrict b, texel_values *restrict texels, float (*restrict even)[GNOI_BATCH])
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < b->count; i++) {
+            float texel = (*texels)[k][i];
+            even[k][i] = even_factor(even[k][i], texel);
+            b->kd[k][i] *= texel;
+            b->rgb[k][i] *= texel;
+        }
+}
+
 /* Factors of the samples' textures; tile->even holds their means until then. The last texel stays: a lamp's own part of the same pixel may
  * come in the next batch. */
 static void apply_texels(gnoi_tile *tile)
 {
     static const float plain[3] = {1, 1, 1};
-    gnoi_batch *b = &tile->batch;
+    texel_values texels;
     gnoi_looks_answer(&tile->looks);
-    for (int i = 0; i < b->count; i++) {
+    for (int i = 0; i < tile->batch.count; i++) {
         const float *texel = tile->texel_of[i] == NO_TEXEL ? plain : tile->asked[tile->texel_of[i]];
-        for (int k = 0; k < 3; k++) {
-            tile->even[k][i] = even_factor(tile->even[k][i], texel[k]);
-            b->kd[k][i] *= texel[k];
-            b->rgb[k][i] *= texel[k];
-        }
+        for (int k = 0; k < 3; k++)
+            texels[k][i] = texel[k];
     }
+    multiply(&tile->batch, &texels, tile->even);
     if (tile->texel_count > 0)
         memcpy(tile->asked[0], tile->asked[tile->texel_count - 1], sizeof tile->asked[0]);
     tile->texel_count = tile->texel_count > 0;

@@ -1,20 +1,16 @@
 /* filter.c -- see filter.h. */
 #include "project/filter.h"
+#include "base/fetch.h"
 #include "project/filter_cut.h"
 #include "project/filter_lanes.h"
 #include <string.h>
 
-#define MOST_BEND 0.03     /* share by which w may change from a look's middle to its border */
-#define MOST_STEEP 0.2     /* and from a pixel's, or it is cut */
-#define FEW_CELLS 100       /* so many elements are weighed without a look at coarser cells */
-#define MANY_CELLS 12000   /* and these rather than being cut */
+#define MOST_STEEP 0.2     /* share by which w may change from a pixel's middle to its border, or it is cut */
+#define MANY_CELLS 12000   /* elements that are weighed rather than being cut */
 #define MOST_COLUMNS 60.0  /* of a look */
 #define MOST_ROWS 60.0
 #define MOST_PARTS 64
-#define LEAST_TURN 1e-4    /* of a look's area to the square of its length, in elements: thinner ones drown in rounding */
-#define LEAST_LENGTH 1e-8
-#define MOST_THICKENED 64.0 /* length up to which they are made so thick; a fraction of an element even then */
-#define FAR_ELEMENTS 1e9   /* of int's range */
+#define MOST_THICKENED 64.0 /* length up to which thin looks are thickened; a fraction of an element even then */
 #define BLOCK_TOLERANCE 0.004 /* aim for the error of a pixel's mean from cells of a coarse level, none of them large or drawn out */
 #define BLOCK_SIDE 24      /* of such cells at most */
 
@@ -41,13 +37,13 @@ typedef struct weighed {
 
 /* Solid bytes, all of them within the picture: `count` rows, each with as many cells for every lane, for counts that change from
  * lane to lane cost more than what they spare. */
-static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, int count, int row, int lane, weighed *sum)
+static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, int count, int column, int row, int lane, weighed *sum)
 {
     const float *decode = look->image->decode;
     unsigned char(*line)[4] = look->image->bytes + (size_t)row * (size_t)look->image->width;
     float red = sum->value[0], green = sum->value[1], blue = sum->value[2], weight = sum->weight;
     for (int r = 0; r < count; r++, line += look->image->width) {
-        unsigned char(*v)[4] = line + look->column + (int)rows[r].first[lane];
+        unsigned char(*v)[4] = line + column + (int)rows[r].first[lane];
         for (int c = 0; c < rows[r].most; c++) {
             float area = rows[r].area[c][lane];
             red += area * decode[v[c][0]];
@@ -62,48 +58,71 @@ static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, i
     sum->weight = weight;
 }
 
-static void add_values(const gnoi_look *look, int column, int row, const gnoi_filter_lane_row *cells, int lane, weighed *sum)
+static void add_values(const gnoi_look *look, int l, int column, int row, const gnoi_filter_lane_row *cells, int lane, weighed *sum)
 {
-    const gnoi_image_level *level = &look->image->level[look->level];
+    const gnoi_image_level *level = &look->image->level[l];
     int j = wrapped(row, level->height, (gno_wrap)look->wrap);
     for (int c = 0; c < cells->columns[lane]; c++) {
         float area = cells->area[c][lane], value[4] = {1, 1, 1, 1};
         int i = wrapped(column + c, level->width, (gno_wrap)look->wrap);
         if (i >= 0 && j >= 0)
-            gnoi_image_value(look->image, look->level, i, j, value);
+            gnoi_image_value(look->image, l, i, j, value);
         for (int k = 0; k < 4; k++)
             sum->value[k] += area * value[k];
         sum->weight += area;
     }
 }
 
-static void answer(const gnoi_look *look, const weighed *sum)
+static void answer(const gnoi_look *look, float share, int is_solid, const weighed *sum)
 {
-    float k = look->share / sum->weight;
+    float k = share / sum->weight;
     for (int i = 0; i < 3; i++)
         look->mean[i] += k * sum->value[i];
-    look->mean[3] += look->solid ? look->share : k * sum->value[3];
+    look->mean[3] += is_solid ? share : k * sum->value[3];
 }
 
 #define ROWS 8 /* at once */
 
-static void answer_together(const gnoi_look *const look[GNOI_FILTER_LANES], int count)
+static void load(const gnoi_look_lanes *from, const unsigned short *which, int count, gnoi_filter_lanes *to)
+{
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+        int l = which[i < count ? i : 0];
+        to->s[i] = from->s[l], to->t[i] = from->t[l];
+        to->sx[i] = from->sx[l], to->sy[i] = from->sy[l];
+        to->tx[i] = from->tx[l], to->ty[i] = from->ty[l];
+        to->wx[i] = from->wx[l], to->wy[i] = from->wy[l];
+    }
+}
+
+static int level_of(const gnoi_looks *looks, int look)
+{
+    return look < GNOI_ASKED ? 0 : looks->part[look - GNOI_ASKED].level;
+}
+
+/* Elements lie far apart: they are on their way while areas are found. */
+static void fetch_rows(const gnoi_looks *looks, int look, const gnoi_filter_lanes *lanes, int lane)
+{
+    const gnoi_image *image = looks->look[look].image;
+    int column = looks->lanes.column[look] + (int)lanes->low_x[lane], row = looks->lanes.row[look] + (int)lanes->first_row[lane];
+    if (image->is_solid && column >= 0 && column < image->width && row >= 0 && row + lanes->rows[lane] <= image->height)
+        for (int r = 0; r < lanes->rows[lane]; r++, row++)
+            FETCH(&image->bytes[(size_t)row * (size_t)image->width + (size_t)column]);
+}
+
+static void answer_together(const gnoi_looks *looks, const unsigned short *which, int count)
 {
     gnoi_filter_lanes lanes;
     gnoi_filter_lane_row cells[ROWS];
     weighed sum[GNOI_FILTER_LANES];
     int rows = 0;
-    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
-        const gnoi_look *l = look[i < count ? i : 0];
-        lanes.s[i] = l->s, lanes.t[i] = l->t;
-        lanes.sx[i] = l->sx, lanes.sy[i] = l->sy;
-        lanes.tx[i] = l->tx, lanes.ty[i] = l->ty;
-        lanes.wx[i] = l->wx, lanes.wy[i] = l->wy;
-    }
-    memset(sum, 0, sizeof sum);
+    for (int i = 0; i < count; i++)
+        sum[i].value[0] = sum[i].value[1] = sum[i].value[2] = sum[i].value[3] = sum[i].weight = 0;
+    load(&looks->lanes, which, count, &lanes);
     gnoi_filter_lanes_start(&lanes);
     for (int i = 0; i < count; i++)
         rows = lanes.rows[i] > rows ? lanes.rows[i] : rows;
+    for (int i = 0; i < count; i++)
+        fetch_rows(looks, which[i], &lanes, i);
     for (int r0 = 0; r0 < rows; r0 += ROWS) {
         int n = rows - r0 < ROWS ? rows - r0 : ROWS, most = 0;
         for (int r = 0; r < n; r++) {
@@ -111,50 +130,47 @@ static void answer_together(const gnoi_look *const look[GNOI_FILTER_LANES], int 
             most = cells[r].most > most ? cells[r].most : most;
         }
         for (int i = 0; i < count; i++) {
-            const gnoi_look *l = look[i];
-            int first = l->row + (int)lanes.first_row[i] + r0, m = lanes.rows[i] - r0 < n ? lanes.rows[i] - r0 : n;
-            if (l->solid && first >= 0 && first + m <= l->image->height && l->column + (int)lanes.low_x[i] - 1 >= 0 &&
-                l->column + (int)lanes.high_x[i] + 1 + most <= l->image->width) {
-                add_bytes(l, cells, m, first, i, &sum[i]);
+            const gnoi_look *l = &looks->look[which[i]];
+            int column = looks->lanes.column[which[i]], first = looks->lanes.row[which[i]] + (int)lanes.first_row[i] + r0;
+            int m = lanes.rows[i] - r0 < n ? lanes.rows[i] - r0 : n, level = level_of(looks, which[i]);
+            if (level == 0 && l->image->is_solid && first >= 0 && first + m <= l->image->height && column + (int)lanes.low_x[i] - 1 >= 0 &&
+                column + (int)lanes.high_x[i] + 1 + most <= l->image->width) {
+                add_bytes(l, cells, m, column, first, i, &sum[i]);
                 continue;
             }
             for (int r = 0; r < m; r++)
-                add_values(l, l->column + (int)cells[r].first[i], first + r, &cells[r], i, &sum[i]);
+                add_values(l, level, column + (int)cells[r].first[i], first + r, &cells[r], i, &sum[i]);
         }
     }
-    for (int i = 0; i < count; i++)
-        answer(look[i], &sum[i]);
+    for (int i = 0; i < count; i++) {
+        float share = which[i] < GNOI_ASKED ? 1 : looks->part[which[i] - GNOI_ASKED].share;
+        answer(&looks->look[which[i]], share, looks->look[which[i]].image->is_solid && level_of(looks, which[i]) == 0, &sum[i]);
+    }
 }
 
-/* Looks of about one size go together, or many lanes would wait for few. */
-#define SIZES 9
-
-static int size_of(float extent)
+/* Looks of one kind go together: the first `count` pixels' and then those from number GNOI_ASKED on. */
+static void answer_looks(const gnoi_looks *looks, int count)
 {
-    return extent < 4 ? (int)extent : extent < 6 ? 4 : extent < 9 ? 5 : extent < 14 ? 6 : extent < 24 ? 7 : 8;
-}
-
-void gnoi_looks_answer(gnoi_looks *looks)
-{
-    const gnoi_look *order[GNOI_LOOKS];
-    unsigned char size[GNOI_LOOKS];
-    int end[2 * SIZES * SIZES] = {0}, count = 0;
-    for (int i = 0; i < looks->count; i++) {
-        const gnoi_look *l = &looks->look[i];
-        int uneven = fabsf(l->wx) + fabsf(l->wy) > GNOI_EVEN_BEND;
-        size[i] = (unsigned char)((uneven * SIZES + size_of(fabsf(l->tx) + fabsf(l->ty))) * SIZES + size_of(fabsf(l->sx) + fabsf(l->sy)));
-        end[size[i]]++;
+    unsigned short order[GNOI_LOOKS];
+    int place[GNOI_LOOK_KINDS] = {0}, total = 0, end = looks->end;
+    const int *kind = looks->lanes.kind;
+    for (int i = 0; i < end; i++) {
+        i = i == count ? GNOI_ASKED : i;
+        if (i < end && kind[i] >= 0)
+            place[kind[i]]++;
     }
-    for (int k = 0; k < 2 * SIZES * SIZES; k++) {
-        int n = end[k];
-        end[k] = count;
-        count += n;
+    for (int k = 0; k < GNOI_LOOK_KINDS; k++) {
+        int n = place[k];
+        place[k] = total;
+        total += n;
     }
-    for (int i = 0; i < looks->count; i++)
-        order[end[size[i]]++] = &looks->look[i];
-    for (int i = 0; i < looks->count; i += GNOI_FILTER_LANES)
-        answer_together(order + i, looks->count - i < GNOI_FILTER_LANES ? looks->count - i : GNOI_FILTER_LANES);
-    looks->count = 0;
+    for (int i = 0; i < end; i++) {
+        i = i == count ? GNOI_ASKED : i;
+        if (i < end && kind[i] >= 0)
+            order[place[kind[i]]++] = (unsigned short)i;
+    }
+    for (int i = 0; i < total; i += GNOI_FILTER_LANES)
+        answer_together(looks, order + i, total - i < GNOI_FILTER_LANES ? total - i : GNOI_FILTER_LANES);
 }
 
 /* ---- questions ------------------------------------------------------------------------------------------------------------- */
@@ -216,9 +232,9 @@ static double aside(double place, double extent)
 /* Patterns drawn out to lines, as texture coordinates that do not differ make them, get the least thickness. */
 static void thicken(view *v)
 {
-    double need = 2 * LEAST_TURN * square_length(v), a = v->sx * v->sx + v->tx * v->tx, b = v->sy * v->sy + v->ty * v->ty, k;
+    double need = 2 * GNOI_LEAST_TURN * square_length(v), a = v->sx * v->sx + v->tx * v->tx, b = v->sy * v->sy + v->ty * v->ty, k;
     int flat_s = v->sx == 0 && v->sy == 0, flat_t = v->tx == 0 && v->ty == 0;
-    if (turn_of(v) > 0.5 * need || !(need < 2 * LEAST_TURN * MOST_THICKENED * MOST_THICKENED) || !(need > 0))
+    if (turn_of(v) > 0.5 * need || !(need < 2 * GNOI_LEAST_TURN * MOST_THICKENED * MOST_THICKENED) || !(need > 0))
         return;
     k = copysign(need / (a > b ? a : b), v->sx * v->ty - v->sy * v->tx);
     if (a > b) {
@@ -237,8 +253,8 @@ static void thicken(view *v)
 static inline int is_sound(const view *v)
 {
     double length = square_length(v);
-    return turn_of(v) > LEAST_TURN * length && length > LEAST_LENGTH * LEAST_LENGTH &&
-           fabs(v->wx) + fabs(v->wy) < 2.1 * MOST_BEND && fabs(v->s) < FAR_ELEMENTS && fabs(v->t) < FAR_ELEMENTS;
+    return turn_of(v) > GNOI_LEAST_TURN * length && length > GNOI_LEAST_LENGTH * GNOI_LEAST_LENGTH &&
+           fabs(v->wx) + fabs(v->wy) < 2.1 * GNOI_MOST_BEND && fabs(v->s) < GNOI_FAR_ELEMENTS && fabs(v->t) < GNOI_FAR_ELEMENTS;
 }
 
 /* Of what lies within int's range. */
@@ -248,7 +264,7 @@ static inline int floor_of(double v)
     return whole - (v < whole);
 }
 
-/* A place along one axis, less far than FAR_ELEMENTS, brought into the first pattern, or pair of patterns. */
+/* A place along one axis, less far than GNOI_FAR_ELEMENTS, brought into the first pattern, or pair of patterns. */
 static inline double home(double v, int elements, gno_wrap wrap)
 {
     double period = wrap == GNO_WRAP_MIRROR ? 2.0 * elements : elements;
@@ -257,22 +273,21 @@ static inline double home(double v, int elements, gno_wrap wrap)
     return v - period * floor_of(v / period);
 }
 
-static inline void add_look(gnoi_looks *looks, const gnoi_image *image, gno_wrap wrap, const view *v, int level, double share, float mean[4])
+static void add_look(gnoi_looks *looks, const gnoi_look *of, const view *v, int level, double share)
 {
-    gnoi_look *l = &looks->look[looks->count++];
-    double k = 1.0 / (1 << level), s = k * home(v->s, image->width, wrap), t = k * home(v->t, image->height, wrap);
-    l->image = image;
-    l->mean = mean;
-    l->share = (float)share;
-    l->column = floor_of(s + 0.5);
-    l->row = floor_of(t + 0.5);
-    l->s = (float)(s - l->column), l->t = (float)(t - l->row);
-    l->sx = (float)(k * v->sx), l->sy = (float)(k * v->sy);
-    l->tx = (float)(k * v->tx), l->ty = (float)(k * v->ty);
-    l->wx = (float)v->wx, l->wy = (float)v->wy;
-    l->level = (unsigned char)level;
-    l->wrap = (unsigned char)wrap;
-    l->solid = level == 0 && image->bytes && !image->has_alpha;
+    int i = looks->end++;
+    gnoi_look_lanes *to = &looks->lanes;
+    double k = 1.0 / (1 << level), s = k * home(v->s, of->image->width, (gno_wrap)of->wrap), t = k * home(v->t, of->image->height, (gno_wrap)of->wrap);
+    looks->look[i] = *of;
+    looks->part[i - GNOI_ASKED].share = (float)share;
+    looks->part[i - GNOI_ASKED].level = level;
+    to->column[i] = floor_of(s + 0.5);
+    to->row[i] = floor_of(t + 0.5);
+    to->s[i] = (float)(s - to->column[i]), to->t[i] = (float)(t - to->row[i]);
+    to->sx[i] = (float)(k * v->sx), to->sy[i] = (float)(k * v->sy);
+    to->tx[i] = (float)(k * v->tx), to->ty[i] = (float)(k * v->ty);
+    to->wx[i] = (float)v->wx, to->wy[i] = (float)v->wy;
+    to->kind[i] = gnoi_look_kind(fabsf(to->sx[i]) + fabsf(to->sy[i]), fabsf(to->tx[i]) + fabsf(to->ty[i]), fabsf(to->wx[i]) + fabsf(to->wy[i]));
 }
 
 /* ---- coarser cells ---------------------------------------------------------------------------------------------------------- */
@@ -284,6 +299,12 @@ static int is_on_grid(gno_wrap wrap, int first, int count, int elements, int lev
     return (first >= 0 && first + count <= elements >> level) || (repeats && (elements & ((1 << level) - 1)) == 0);
 }
 
+/* Whether a cell whose elements differ so much from its mean may be one of `cells` of a pixel. */
+static int is_even_enough(float spread, int cells)
+{
+    return !(spread > 0 && 1.0 / cells > gnoi_filter_most_area(BLOCK_TOLERANCE, spread));
+}
+
 /* 1 when cells of `level` > 0 may stand for their elements: few enough, on one grid, each so small a share of the pixel, or so even, that
  * what its mean does to the part of it that is seen is below the tolerance. */
 static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int level)
@@ -291,13 +312,17 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
     const gnoi_image_level *l = &image->level[level];
     double k = 1.0 / (1 << level), s = k * home(v->s, image->width, wrap), t = k * home(v->t, image->height, wrap);
     double wide = 0.5 * k * (fabs(v->sx) + fabs(v->sy)), high = 0.5 * k * (fabs(v->tx) + fabs(v->ty));
-    int i0 = (int)floor(s - wide), j0 = (int)floor(t - high), columns, rows;
+    int i0 = floor_of(s - wide), j0 = floor_of(t - high), columns, rows;
+    size_t middle;
     float spread = 0;
     if (2 * wide + 2 > BLOCK_SIDE || 2 * high + 2 > BLOCK_SIDE)
         return 0;
-    columns = (int)floor(s + wide) - i0 + 1;
-    rows = (int)floor(t + high) - j0 + 1;
+    columns = floor_of(s + wide) - i0 + 1;
+    rows = floor_of(t + high) - j0 + 1;
     if (!is_on_grid(wrap, i0, columns, image->width, level) || !is_on_grid(wrap, j0, rows, image->height, level))
+        return 0;
+    middle = (size_t)wrapped(j0 + rows / 2, l->height, wrap) * (size_t)l->width + (size_t)wrapped(i0 + columns / 2, l->width, wrap);
+    if (!is_even_enough(l->spread[middle], columns * rows)) /* mostly that is enough of an answer */
         return 0;
     for (int j = 0; j < rows; j++) {
         size_t row = (size_t)wrapped(j0 + j, l->height, wrap) * (size_t)l->width;
@@ -305,7 +330,7 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
             float own = l->spread[row + (size_t)wrapped(i0 + i, l->width, wrap)];
             spread = own > spread ? own : spread;
         }
-        if (spread > 0 && 1.0 / (columns * rows) > gnoi_filter_most_area(BLOCK_TOLERANCE, spread))
+        if (!is_even_enough(spread, columns * rows))
             return 0;
     }
     return 1;
@@ -316,9 +341,9 @@ static int level_for(const gnoi_image *image, gno_wrap wrap, const view *v)
 {
     double wide = fabs(v->sx) + fabs(v->sy), high = fabs(v->tx) + fabs(v->ty), widest = wide > high ? wide : high;
     int level = 0;
-    if (cells_of(v) <= FEW_CELLS)
+    if (cells_of(v) <= GNOI_FEW_CELLS)
         return 0;
-    if (!(widest < FAR_ELEMENTS && fabs(v->s) < FAR_ELEMENTS && fabs(v->t) < FAR_ELEMENTS))
+    if (!(widest < GNOI_FAR_ELEMENTS && fabs(v->s) < GNOI_FAR_ELEMENTS && fabs(v->t) < GNOI_FAR_ELEMENTS))
         return -1;
     while (level + 1 < image->level_count && widest > (double)(3 << level))
         level++;
@@ -333,13 +358,13 @@ static int level_for(const gnoi_image *image, gno_wrap wrap, const view *v)
 /* How many parts side by side and one above the other make sound looks. Returns 0 where that is too many. */
 static int find_parts(const view *v, int level, int *across, int *down)
 {
-    double k = 1.0 / (1 << level), steep = 0.5 * (fabs(v->wx) + fabs(v->wy)), bend = (1 - steep) * MOST_BEND, nx, ny;
+    double k = 1.0 / (1 << level), steep = 0.5 * (fabs(v->wx) + fabs(v->wy)), bend = (1 - steep) * GNOI_MOST_BEND, nx, ny;
     if (!(steep < MOST_STEEP))
         return 0;
     nx = ceil(fabs(v->wx) / bend);
     ny = ceil(fabs(v->wy) / bend);
-    nx = nx < 1 || steep < MOST_BEND ? 1 : nx;
-    ny = ny < 1 || steep < MOST_BEND ? 1 : ny;
+    nx = nx < 1 || steep < GNOI_MOST_BEND ? 1 : nx;
+    ny = ny < 1 || steep < GNOI_MOST_BEND ? 1 : ny;
     while (nx * ny <= MOST_PARTS && (k * (fabs(v->sx) / nx + fabs(v->sy) / ny) > MOST_COLUMNS || k * (fabs(v->tx) / nx + fabs(v->ty) / ny) > MOST_ROWS)) {
         if ((fabs(v->sx) + fabs(v->tx)) * ny > (fabs(v->sy) + fabs(v->ty)) * nx)
             nx++;
@@ -360,31 +385,22 @@ static view part_at(const gnoi_image *image, const gnoi_pattern *p, double x, do
 }
 
 /* The looks of a pixel in parts; 0 where one of them would not be sound. */
-static int add_parts(gnoi_looks *looks, const gnoi_image *image, gno_wrap wrap, const gnoi_pattern *p, double x, double y, int level,
-                     int across, int down, float mean[4])
+static int add_parts(gnoi_looks *looks, const gnoi_look *of, const gnoi_pattern *p, int level, int across, int down)
 {
-    int start = looks->count;
+    int start = looks->end;
     for (int i = 0; i < across * down; i++) {
-        view v = part_at(image, p, x - 0.5 + (i % across + 0.5) / across, y - 0.5 + (i / across + 0.5) / down, across, down);
+        view v = part_at(of->image, p, (i % across + 0.5) / across - 0.5, (i / across + 0.5) / down - 0.5, across, down);
         thicken(&v);
         if (!is_sound(&v)) {
-            looks->count = start;
+            looks->end = start;
             return 0;
         }
-        add_look(looks, image, wrap, &v, level, 1.0 / (across * down), mean);
+        add_look(looks, of, &v, level, 1.0 / (across * down));
     }
     return 1;
 }
 
 /* ---- a pixel ---------------------------------------------------------------------------------------------------------------- */
-
-static gnoi_screen_plane relative(gnoi_screen_plane f, double factor, double x, double y)
-{
-    f.f0 = factor * gnoi_plane_at(&f, x, y);
-    f.fx *= factor;
-    f.fy *= factor;
-    return f;
-}
 
 static gnoi_screen_plane around(double f0, double fx, double fy)
 {
@@ -395,54 +411,113 @@ static gnoi_screen_plane around(double f0, double fx, double fy)
     return f;
 }
 
-static void cut(const gnoi_image *image, gno_wrap wrap, const view *enlarged, const gnoi_pattern *p, double x, double y, double xs,
-                double ys, float mean[4])
+static gnoi_screen_plane scaled(const gnoi_screen_plane *f, double factor)
 {
-    gnoi_screen_plane s = relative(p->s, image->width, x, y), t = relative(p->t, image->height, x, y), w = relative(p->w, 1, x, y);
+    return around(factor * f->f0, factor * f->fx, factor * f->fy);
+}
+
+static void cut(const gnoi_look *of, const gnoi_asked *asked, const view *enlarged, const gnoi_pattern *p)
+{
+    const gnoi_image *image = of->image;
+    gnoi_screen_plane s = scaled(&p->s, image->width), t = scaled(&p->t, image->height), w = p->w;
     if (enlarged) {
         s = around(enlarged->s, enlarged->sx, enlarged->sy);
         t = around(enlarged->t, enlarged->tx, enlarged->ty);
         w = around(1, 0, 0);
     }
-    if (gnoi_filter_cut(image, wrap, &s, &t, &w, mean))
+    if (gnoi_filter_cut(image, asked->how->wrap, &s, &t, &w, of->mean))
         return;
-    s = around(image->width * gnoi_plane_at(&p->s, xs, ys), 0, 0);
-    t = around(image->height * gnoi_plane_at(&p->t, xs, ys), 0, 0);
-    w = around(gnoi_plane_at(&p->w, xs, ys), 0, 0);
-    gnoi_filter_cut(image, wrap, &s, &t, &w, mean);
+    s = around(image->width * gnoi_plane_at(&p->s, asked->xs, asked->ys), 0, 0);
+    t = around(image->height * gnoi_plane_at(&p->t, asked->xs, asked->ys), 0, 0);
+    w = around(gnoi_plane_at(&p->w, asked->xs, asked->ys), 0, 0);
+    gnoi_filter_cut(image, asked->how->wrap, &s, &t, &w, of->mean);
 }
 
 /* Whatever the pixel is like. */
-static void ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y, double xs,
-                double ys, float mean[4])
+static void look_closer(gnoi_looks *looks, const gnoi_look *of, const gnoi_asked *asked, const gnoi_pattern *p)
 {
-    view v = view_at(image, p, x, y);
+    const gno_texture *how = asked->how;
+    view v = view_at(of->image, p, 0, 0);
     int enlarged = how->filter == GNO_FILTER_LINEAR && v.w > 0 && enlarge(&v), level, across, down;
     thicken(&v);
-    if (v.w > 0 && (level = level_for(image, how->wrap, &v)) >= 0 && find_parts(&v, level, &across, &down)) {
-        mean[0] = mean[1] = mean[2] = mean[3] = 0;
-        if (across * down > 1 && add_parts(looks, image, how->wrap, p, x, y, level, across, down, mean))
+    if (v.w > 0 && (level = level_for(of->image, how->wrap, &v)) >= 0 && find_parts(&v, level, &across, &down)) {
+        if (across * down > 1 && add_parts(looks, of, p, level, across, down))
             return;
         if (across * down == 1 && is_sound(&v)) {
-            add_look(looks, image, how->wrap, &v, level, 1, mean);
+            add_look(looks, of, &v, level, 1);
             return;
         }
     }
-    cut(image, how->wrap, enlarged ? &v : NULL, p, x, y, xs, ys, mean);
+    cut(of, asked, enlarged ? &v : NULL, p);
+}
+
+static inline double period_of(const gno_texture *how)
+{
+    if (how->filter != GNO_FILTER_BOX)
+        return -1;
+    return how->wrap == GNO_WRAP_REPEAT ? 1 : how->wrap == GNO_WRAP_MIRROR ? 2 : 0;
+}
+
+/* The pixels whose views wait. */
+static void take(gnoi_looks *looks)
+{
+    const gnoi_views *v = &looks->views;
+    int first = looks->count > 0 ? (looks->count - 1) / GNOI_VIEWS * GNOI_VIEWS : 0, count = looks->count - first;
+    gnoi_views_take(&looks->views, count, &looks->lanes, first);
+    for (int i = 0; i < count; i++) {
+        const gnoi_look *l = &looks->look[first + i];
+        l->mean[0] = l->mean[1] = l->mean[2] = l->mean[3] = 0;
+        if (looks->lanes.kind[first + i] < 0) {
+            gnoi_pattern p;
+            p.s = around(v->s[i], v->sx[i], v->sy[i]);
+            p.t = around(v->t[i], v->tx[i], v->ty[i]);
+            p.w = around(v->w[i], v->wx[i], v->wy[i]);
+            if (looks->end + MOST_PARTS > GNOI_LOOKS) {
+                answer_looks(looks, 0);
+                looks->end = GNOI_ASKED;
+            }
+            look_closer(looks, l, &looks->asked[i], &p);
+        }
+    }
 }
 
 void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y,
                     double xs, double ys, float mean[4])
 {
-    view v = view_at(image, p, x, y);
-    if (looks->count + MOST_PARTS > GNOI_LOOKS)
+    gnoi_views *v = &looks->views;
+    gnoi_look *l;
+    int i;
+    if (looks->count == GNOI_ASKED)
         gnoi_looks_answer(looks);
-    if (v.w > 0 && how->filter == GNO_FILTER_BOX && cells_of(&v) <= FEW_CELLS && is_sound(&v)) {
-        mean[0] = mean[1] = mean[2] = mean[3] = 0;
-        add_look(looks, image, how->wrap, &v, 0, 1, mean);
-    } else {
-        ask(looks, image, how, p, x, y, xs, ys, mean);
-    }
+    if (looks->count == 0)
+        looks->end = GNOI_ASKED;
+    i = looks->count++;
+    l = &looks->look[i];
+    l->image = image;
+    l->mean = mean;
+    l->wrap = (int)how->wrap;
+    i %= GNOI_VIEWS;
+    looks->asked[i].how = how;
+    looks->asked[i].xs = xs - x;
+    looks->asked[i].ys = ys - y;
+    v->s[i] = gnoi_plane_at(&p->s, x, y), v->sx[i] = p->s.fx, v->sy[i] = p->s.fy;
+    v->t[i] = gnoi_plane_at(&p->t, x, y), v->tx[i] = p->t.fx, v->ty[i] = p->t.fy;
+    v->w[i] = gnoi_plane_at(&p->w, x, y), v->wx[i] = p->w.fx, v->wy[i] = p->w.fy;
+    v->width[i] = image->width;
+    v->height[i] = image->height;
+    v->period[i] = period_of(how);
+    if (i + 1 == GNOI_VIEWS)
+        take(looks);
+}
+
+void gnoi_looks_answer(gnoi_looks *looks)
+{
+    if (looks->count == 0)
+        return;
+    if (looks->count % GNOI_VIEWS != 0)
+        take(looks);
+    answer_looks(looks, looks->count);
+    looks->count = 0;
 }
 
 void gnoi_filter_pixel(const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y, double xs, double ys,

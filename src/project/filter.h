@@ -11,27 +11,34 @@
 #ifndef GNOI_PROJECT_FILTER_H
 #define GNOI_PROJECT_FILTER_H
 
+#include "project/filter_view.h"
 #include "project/pattern.h"
 #include "scene/image.h"
 
-#define GNOI_LOOKS 320
-
-/* A pixel, or a part of it, on the pattern, in cells of one level of the picture. */
+/* Of which pixel a look is. */
 typedef struct gnoi_look {
     const gnoi_image *image;
-    float *mean;          /* where its share of the pixel's mean is added */
-    float share;
-    int column, row;      /* of the cell from which its place is counted: so counted the border next to it is near zero, and sharp */
-    float s, t;           /* place of its middle */
-    float sx, sy, tx, ty; /* what one width and one height of it changes that by */
-    float wx, wy;         /* and w, relative to the middle's */
-    unsigned char level, wrap;
-    unsigned char solid;  /* level 0, bytes, no holes */
+    float *mean;      /* where its share of the pixel's mean is added */
+    int wrap;
 } gnoi_look;
 
+/* What else is known of a pixel that is asked for. */
+typedef struct gnoi_asked {
+    const gno_texture *how;
+    double xs, ys;    /* from its centre */
+} gnoi_asked;
+
 typedef struct gnoi_looks {
-    int count;
+    int count;              /* pixels asked for; 0 to begin with */
+    int end;                /* of looks beyond theirs; valid while some are asked for */
+    gnoi_views views;       /* of the last of them */
+    gnoi_asked asked[GNOI_VIEWS];
+    gnoi_look_lanes lanes;  /* of the pixels; from GNOI_ASKED on of parts of those that are not plain */
     gnoi_look look[GNOI_LOOKS];
+    struct {
+        float share;
+        int level;
+    } part[GNOI_LOOKS - GNOI_ASKED];
 } gnoi_looks;
 
 /* Asks for the mean over the pixel whose centre is (x,y), the square of side 1 around it; red, green, blue multiplied by alpha.

@@ -175,6 +175,7 @@ gno_status gnoi_image_make(gno_context *context, const gno_pixels *pixels, gnoi_
         copy_bytes(pixels, image);
     else
         copy_floats(pixels, image);
+    image->is_solid = image->bytes && !image->has_alpha;
     for (int l = 1; l < image->level_count; l++)
         for (int y = 0; y < image->level[l].height; y++)
             for (int x = make_whole_cells(image, l, y); x < image->level[l].width; x++)

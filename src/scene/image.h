@@ -23,6 +23,7 @@ typedef struct gnoi_image_level {
 typedef struct gnoi_image {
     int width, height;
     int has_alpha;          /* some element is not solid */
+    int is_solid;           /* given in bytes and without alpha */
     unsigned char (*bytes)[4]; /* level 0 of a picture given in bytes; else NULL */
     float *decode;          /* 256 values of a byte, for red, green and blue */
     int level_count;

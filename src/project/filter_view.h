@@ -1,0 +1,66 @@
+/* filter_view.h -- how pixels lie on their patterns, many pixels side by side.
+ *
+ * Place: under filter.c. Plain arithmetic on arrays, one array a component, which every machine does alike.
+ * Most pixels are plain: a box of few elements, with w that hardly changes. Those become looks here; the others are told apart.
+ */
+#ifndef GNOI_PROJECT_FILTER_VIEW_H
+#define GNOI_PROJECT_FILTER_VIEW_H
+
+#include "project/filter_lanes.h"
+#include <stdint.h>
+
+#define GNOI_VIEWS 64   /* pixels at once: few enough for the nearest cache */
+#define GNOI_ASKED 256  /* pixels of one answer */
+#define GNOI_LOOKS 448  /* and looks of those that are not plain */
+
+#define GNOI_MOST_BEND 0.03       /* share by which w may change from a look's middle to its border */
+#define GNOI_FEW_CELLS 100        /* so many elements are weighed without a look at coarser cells */
+#define GNOI_LEAST_TURN 1e-4      /* of a look's area to the square of its length, in elements: thinner ones drown in rounding */
+#define GNOI_LEAST_LENGTH 1e-8
+#define GNOI_FAR_ELEMENTS 1e9     /* of int's range */
+
+typedef double gnoi_view_values[GNOI_VIEWS];
+
+/* Numerators and divisor of the pattern at the pixels' middles, what one width and one height of a pixel changes them by, and the
+ * picture's extents in elements. */
+typedef struct gnoi_views {
+    gnoi_view_values s, sx, sy, t, tx, ty, w, wx, wy, width, height;
+    gnoi_view_values period; /* patterns after which everything repeats itself; 0: none; -1 for pixels that are not plain in any case */
+} gnoi_views;
+
+typedef float gnoi_look_values[GNOI_LOOKS];
+
+/* Pixels, or parts of them, on the pattern, in cells of one level of the picture. */
+typedef struct gnoi_look_lanes {
+    int column[GNOI_LOOKS], row[GNOI_LOOKS]; /* of the cell from which the place is counted: so counted the border next to it is near zero, and sharp */
+    gnoi_look_values s, t;                   /* place of the middle */
+    gnoi_look_values sx, sy, tx, ty;         /* what one width and one height of it changes that by */
+    gnoi_look_values wx, wy;                 /* and w, relative to the middle's */
+    int kind[GNOI_LOOKS];                    /* gnoi_look_kind; -1: not plain */
+} gnoi_look_lanes;
+
+#define GNOI_LOOK_SIZES 12
+#define GNOI_LOOK_KINDS (2 * GNOI_LOOK_SIZES * GNOI_LOOK_SIZES)
+
+/* Finds the looks of `count` pixels, from place `first` on. Both are written up to the next multiple of 16. */
+void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int first);
+
+static inline float gnoi_lesser(float a, float b) { return a < b ? a : b; }
+static inline float gnoi_greater(float a, float b) { return a > b ? a : b; }
+
+/* 0 .. 3: less than 4 cells; two sizes an octave from there. */
+static inline int gnoi_look_size(float extent)
+{
+    union { float f; int32_t i; } large;
+    large.f = gnoi_greater(gnoi_lesser(extent, 63.0f), 4.0f);
+    return (int)gnoi_lesser(extent, 4.0f) + (large.i >> 22) - (0x40800000 >> 22);
+}
+
+/* Looks of about one size go together, or many lanes would wait for few. Extents are along S and along T, `bend` is |wx| + |wy|. */
+static inline int gnoi_look_kind(float wide, float high, float bend)
+{
+    int uneven = bend > GNOI_EVEN_BEND;
+    return (uneven * GNOI_LOOK_SIZES + gnoi_look_size(high)) * GNOI_LOOK_SIZES + gnoi_look_size(wide);
+}
+
+#endif
