@@ -163,9 +163,9 @@ $(HOSTILE): $(HOSTILE_OBJ) $(STATIC)
 	@mkdir -p $(@D)
 	$(call run,LINK,$(LINK) $(HOSTILE_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
 
-$(CALL_FAULTS): $(BUILD)/obj/tests/faults/call_faults.o $(SUPPORT_OBJ) $(STATIC)
+$(CALL_FAULTS): $(BUILD)/obj/tests/faults/call_faults.o $(BUILD)/obj/tests/faults/calls.o $(SUPPORT_OBJ) $(STATIC)
 	@mkdir -p $(@D)
-	$(call run,LINK,$(LINK) $< $(SUPPORT_OBJ) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
+	$(call run,LINK,$(LINK) $(filter %.o,$^) $(BUILD)/libgnomon-io.a $(BUILD)/libgnomon.a -o $@ $(IO_LIBS) -lm)
 
 $(COMMAND_FAULTS): $(BUILD)/obj/tests/faults/command_faults.o $(BUILD)/obj/tests/support/places.o $(CLI_OBJ) $(STATIC)
 	@mkdir -p $(@D)

@@ -1,0 +1,188 @@
+/* test_picture_files.c -- gno_picture_write: a file is there whole or not at all, whatever fails. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "picture_test.h"
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+/* ---- whole or not at all --------------------------------------------------------------------------------------------- */
+
+static const char *const every_format[] = {"a.png", "a.exr", "a.pfm"};
+
+static void put_text(const char *path, const char *text)
+{
+    FILE *out = fopen(path, "w");
+    assert_non_null(out);
+    fputs(text, out);
+    assert_int_equal(fclose(out), 0);
+}
+
+static void expect_text(const char *path, const char *text)
+{
+    char read[100] = "";
+    FILE *in = fopen(path, "r");
+    assert_non_null(in);
+    assert_non_null(fgets(read, sizeof read, in));
+    fclose(in);
+    assert_string_equal(read, text);
+}
+
+static void test_unwritable(void **state)
+{
+    (void)state;
+    const float rgb[3] = {0};
+    gno_context *context = new_context();
+    for (int i = 0; i < 3; i++) {
+        char path[64];
+        snprintf(path, sizeof path, "nowhere/%s", every_format[i]);
+        assert_int_equal(write_picture(context, in_folder(path), GNO_DEPTH_DEFAULT, 1, 1, rgb), GNO_ERROR_FILE);
+        expect_message(context, path);
+        expect_message(context, "No such file");
+        assert_int_equal(mkdir(in_folder(every_format[i]), 0777), 0);
+        assert_int_equal(write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, 1, 1, rgb), GNO_ERROR_FILE);
+        expect_message(context, "directory");
+    }
+    assert_int_equal(files_in_folder(), 3);
+    gno_context_destroy(context);
+}
+
+/* A limit on file sizes stands in for a full disk: writing fails half-way. */
+static void test_failure_keeps_the_old_file(void **state)
+{
+    (void)state;
+    const int side = 300;
+    gno_context *context = new_context();
+    float *rgb = gradient(side, side);
+    uint32_t seed = 1;
+    for (size_t i = 0; i < (size_t)side * (size_t)side * 3; i++) {
+        seed = seed * 1664525u + 1013904223u; /* noise cannot be compressed below the limit */
+        rgb[i] = (float)(seed / 4294967296.0);
+    }
+    const size_t held = gno_context_memory(context, NULL);
+    struct rlimit old, low;
+    assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
+    low = old;
+    low.rlim_cur = 20000;
+    signal(SIGXFSZ, SIG_IGN);
+    for (int i = 0; i < 3; i++) {
+        put_text(in_folder(every_format[i]), "old picture");
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
+        const gno_status status = write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, side, side, rgb);
+        assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
+        assert_int_equal(status, GNO_ERROR_FILE);
+        expect_message(context, every_format[i]);
+        expect_message(context, "too large");
+        expect_text(in_folder(every_format[i]), "old picture");
+        assert_int_equal(files_in_folder(), i + 1);
+        assert_int_equal(gno_context_memory(context, NULL), held);
+    }
+    signal(SIGXFSZ, SIG_DFL);
+    free(rgb);
+    gno_context_destroy(context);
+}
+
+static void test_success_replaces_the_old_file(void **state)
+{
+    (void)state;
+    gno_context *context = new_context();
+    float *rgb = gradient(5, 4);
+    struct stat found;
+    put_text(in_folder("a.png"), "old picture");
+    assert_int_equal(chmod(in_folder("a.png"), 0640), 0);
+    assert_int_equal(symlink("a.png", in_folder("link.png")), 0);
+    assert_int_equal(write_picture(context, in_folder("link.png"), GNO_DEPTH_DEFAULT, 5, 4, rgb), GNO_OK);
+    free(read_png(in_folder("a.png"), 8, 5, 4));
+    assert_int_equal(stat(in_folder("a.png"), &found), 0);
+    assert_int_equal(found.st_mode & 0777, 0640);
+    assert_int_equal(lstat(in_folder("link.png"), &found), 0);
+    assert_true(S_ISLNK(found.st_mode));
+    assert_int_equal(files_in_folder(), 2);
+    free(rgb);
+    gno_context_destroy(context);
+}
+
+static void test_full_device(void **state)
+{
+    (void)state;
+    if (access("/dev/full", W_OK) != 0) {
+        skip();
+    }
+    gno_context *context = new_context();
+    float *rgb = gradient(200, 200);
+    for (int i = 0; i < 3; i++) {
+        assert_int_equal(symlink("/dev/full", in_folder(every_format[i])), 0);
+        assert_int_equal(write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, 200, 200, rgb), GNO_ERROR_FILE);
+        expect_message(context, "No space");
+    }
+    assert_int_equal(files_in_folder(), 3);
+    free(rgb);
+    gno_context_destroy(context);
+}
+
+/* ---- memory ---------------------------------------------------------------------------------------------------------- */
+
+typedef struct counter {
+    int left; /* allocations that still succeed */
+} counter;
+
+static void *counted(void *user, void *block, size_t old_size, size_t new_size)
+{
+    counter *count = user;
+    (void)old_size;
+    if (new_size == 0) {
+        free(block);
+        return NULL;
+    }
+    return count->left-- > 0 ? realloc(block, new_size) : NULL;
+}
+
+static void test_every_allocation_fails_once(void **state)
+{
+    (void)state;
+    float *rgb = gradient(40, 40);
+    counter count = {1000000};
+    gno_context_def def = gno_context_def_default();
+    def.alloc = counted;
+    def.alloc_user = &count;
+    gno_context *context = NULL;
+    assert_int_equal(gno_context_create(&def, &context), GNO_OK);
+    const size_t held = gno_context_memory(context, NULL);
+    for (int i = 0; i < 3; i++) {
+        gno_status status = GNO_ERROR_MEMORY;
+        for (int allowed = 0; status != GNO_OK; allowed++) {
+            assert_true(allowed < 100);
+            count.left = allowed;
+            status = write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, 40, 40, rgb);
+            assert_true(status == GNO_OK || status == GNO_ERROR_MEMORY);
+            assert_int_equal(files_in_folder(), status == GNO_OK ? i + 1 : i);
+            assert_int_equal(gno_context_memory(context, NULL), held);
+        }
+    }
+    free(rgb);
+    gno_context_destroy(context);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test_setup(test_unwritable, empty_folder),
+        cmocka_unit_test_setup(test_failure_keeps_the_old_file, empty_folder),
+        cmocka_unit_test_setup(test_success_replaces_the_old_file, empty_folder),
+        cmocka_unit_test_setup(test_full_device, empty_folder),
+        cmocka_unit_test_setup(test_every_allocation_fails_once, empty_folder),
+    };
+    if (mkdtemp(folder) == NULL) {
+        perror(folder);
+        return 1;
+    }
+    const int failed = cmocka_run_group_tests(tests, NULL, NULL);
+    empty_folder(NULL);
+    rmdir(folder);
+    return failed != 0;
+}
