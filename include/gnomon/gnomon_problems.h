@@ -32,13 +32,15 @@ typedef struct gno_problem {
     size_t polygon; /* number of gno_scene_polygon */
     long other;     /* a duplicate's first, a crowded edge's second polygon; else -1 */
     int vertex[2];  /* edges: the ends, as `polygon` names and passes them; else -1 */
+    int border;     /* 1: an open edge of a part (polygons that hang together by edges of just two) that lies in one plane, as a floor
+                       does: it has to end somewhere, so the edge is no gap in a body; else 0 */
 } gno_problem;
 
 /* Non-zero stops with CANCELLED. It must not change the scene. */
 typedef int (*gno_problem_fn)(void *user, const gno_problem *problem);
 
 /* Finds the problems, preparing the scene if need be: counts[kind] of each, and a call of `found` for each, kind by kind, polygons
- * in order, edges in the order of their ends. found and counts may be NULL. Holds some 110 bytes a polygon and 32 a corner meanwhile.
+ * in order, edges in the order of their ends. found and counts may be NULL. Holds some 140 bytes a polygon and 32 a corner meanwhile.
  * Edges are balanced as in Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside segmentation using generalized winding
  * numbers" (2013). Errors: MEMORY, ARGUMENT, CANCELLED. */
 GNO_API gno_status gno_scene_find_problems(gno_scene *scene, int threads, gno_problem_fn found, void *user,

@@ -33,9 +33,10 @@ typedef struct job {
 static int help(void)
 {
     printf("usage: gnomon info [OPTIONS] SCENE\n\n"
-           "Tells what is in SCENE, a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb):\n"
+           "Tells what is in SCENE, a scene file (.yaml, .yml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb):\n"
            "counts, bounds, camera, lights, materials, and what is wrong with its polygons: those without area, not\n"
-           "planar, given twice, wound against their neighbours; edges of one polygon alone, and of more than two. The\n"
+           "planar, given twice, wound against their neighbours; edges of one polygon alone, and of more than two. An edge\n"
+           "of one polygon is no problem where flat parts end, as a floor does; elsewhere it may be a gap in a body. The\n"
            "table names the first of each, --json all of them; polygons are numbered from 0 as they are read.\n\noptions:\n");
     option_print(options, OPTIONS);
     printf("\nexamples:\n"

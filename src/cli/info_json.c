@@ -94,7 +94,8 @@ static void print_problem(const gno_problem *problem)
         break;
     case GNO_PROBLEM_OPEN_EDGE:
     case GNO_PROBLEM_CROWDED_EDGE:
-        printf("{\"polygon\": %zu, \"vertices\": [%d, %d]}", problem->polygon, problem->vertex[0], problem->vertex[1]);
+        printf("{\"polygon\": %zu, \"vertices\": [%d, %d]%s}", problem->polygon, problem->vertex[0], problem->vertex[1],
+               problem->border ? ", \"border\": true" : "");
         break;
     default:
         printf("%zu", problem->polygon);
@@ -104,11 +105,15 @@ static void print_problem(const gno_problem *problem)
 static void print_problems(const summary *found)
 {
     const gno_problem *next = found->list.items;
+    size_t borders = 0;
+    for (size_t i = 0; i < found->list.count; i++) {
+        borders += next[i].border != 0;
+    }
     printf("  \"problems\": {");
     for (int kind = 0; kind < GNO_PROBLEM_KINDS; kind++) {
         printf("\"%s\": %zu, ", kind_keys[kind], found->problem_counts[kind]);
     }
-    printf("\"details_found\": %zu,\n    \"ids\": {", found->problems.details);
+    printf("\"border_edges\": %zu, \"details_found\": %zu,\n    \"ids\": {", borders, found->problems.details);
     for (int kind = 0; kind < GNO_PROBLEM_KINDS; kind++) {
         printf("%s\"%s\": [", kind > 0 ? ",\n      " : "\n      ", kind_keys[kind]);
         for (size_t i = 0; i < found->problem_counts[kind]; i++) {

@@ -140,6 +140,34 @@ static void print_materials(const summary *found)
     }
 }
 
+static size_t count_borders(const found_list *list)
+{
+    size_t borders = 0;
+    for (size_t i = 0; i < list->count; i++) {
+        borders += list->items[i].border != 0;
+    }
+    return borders;
+}
+
+/* Names those that may be gaps; where flat parts end there is nothing to mend. */
+static void print_open_edges(const gno_problem *problems, size_t count, size_t borders)
+{
+    const size_t gaps = count - borders;
+    size_t shown = 0;
+    printf("  %zu edge%s open, of one polygon alone", count, plural(count));
+    if (borders > 0 && gaps > 0) {
+        printf(", %zu of them where flat parts end", borders);
+    } else if (borders > 0) {
+        printf(", where flat parts end");
+    }
+    for (size_t i = 0; i < count && shown < LISTED; i++) {
+        if (!problems[i].border) {
+            printf("%s%zu (%d-%d)", shown++ > 0 ? ", " : ": ", problems[i].polygon, problems[i].vertex[0], problems[i].vertex[1]);
+        }
+    }
+    printf("%s\n", gaps > shown ? ", ..." : "");
+}
+
 /* The count of a kind, and the first of its polygons or edges. */
 static void print_kind(gno_problem_kind kind, const gno_problem *problems, size_t count)
 {
@@ -148,7 +176,7 @@ static void print_kind(gno_problem_kind kind, const gno_problem *problems, size_
         {"polygon", "not planar, split into triangles"},
         {"polygon", "given before"},
         {"polygon", "wound against neighbours"},
-        {"edge", "open, of one polygon alone"},
+        {NULL, NULL}, /* open edges have words of their own */
         {"edge", "of more than two polygons"},
     };
     const char *thing = words[kind][0];
@@ -172,11 +200,8 @@ static void print_problems(const summary *found)
     if (p->details > 0) {
         printf("details    %zu found\n", p->details);
     }
-    if (found->list.count == 0 && found->warning_count == 0) {
-        printf("problems   none\n");
-        return;
-    }
-    printf("problems\n");
+    const size_t borders = count_borders(&found->list);
+    printf(found->list.count == borders && found->warning_count == 0 ? "problems   none\n" : "problems\n");
     for (size_t i = 0; i < found->warning_count; i++) {
         printf("  ");
         name_text(found->warnings[i]);
@@ -184,10 +209,13 @@ static void print_problems(const summary *found)
     }
     const gno_problem *next = found->list.items;
     for (int kind = 0; kind < GNO_PROBLEM_KINDS; kind++) {
-        if (found->problem_counts[kind] > 0) {
-            print_kind((gno_problem_kind)kind, next, found->problem_counts[kind]);
-            next += found->problem_counts[kind];
+        const size_t count = found->problem_counts[kind];
+        if (count > 0 && kind == GNO_PROBLEM_OPEN_EDGE) {
+            print_open_edges(next, count, borders);
+        } else if (count > 0) {
+            print_kind((gno_problem_kind)kind, next, count);
         }
+        next += count;
     }
 }
 

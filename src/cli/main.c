@@ -56,7 +56,7 @@ static int help(void)
 {
     printf("gnomon draws scenes made of polygons, with exact hidden surfaces and exact shadows.\n\n"
            "usage: gnomon COMMAND [OPTIONS] SCENE\n\n"
-           "SCENE is a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\ncommands:\n");
+           "SCENE is a scene file (.yaml, .yml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\ncommands:\n");
     for (int i = 0; i < COMMANDS; i++) {
         printf("  %-10s%s\n", commands[i]->name, commands[i]->summary);
     }

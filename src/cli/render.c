@@ -68,7 +68,7 @@ static int help(void)
 {
     const gno_render_def def = gno_render_def_default();
     printf("usage: gnomon render [OPTIONS] SCENE [-o FILE]...\n\n"
-           "Draws SCENE, a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\noptions:\n");
+           "Draws SCENE, a scene file (.yaml, .yml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\noptions:\n");
     option_print(options, OPTIONS);
     printf("\nThe default of --lines is %d:%d.\n\n"
            "examples:\n"

@@ -53,10 +53,12 @@ static int help(void)
 {
     printf("usage: gnomon vector [OPTIONS] SCENE [-o FILE]...\n\n"
            "Draws what the camera of SCENE sees as filled shapes without hidden parts, one for each polygon and each set of\n"
-           "lights that reaches parts of it. SCENE is a scene file (.yaml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\n"
+           "lights that reaches parts of it. SCENE is a scene file (.yaml, .yml) or a mesh file alone (.obj, .ply, .stl, .gltf, .glb).\n\n"
            "options:\n");
     option_print(options, OPTIONS);
-    printf("\nEach shape of an SVG says where it comes from: data-polygon, data-object, data-material, data-lights, data-area.\n\n"
+    printf("\nLimits: glass hides what lies behind it; a shape has one colour, the mean of its texture and of its smooth\n"
+           "shading; soft shadows, and those of textures with holes, are whole. gnomon render has none of these limits.\n\n"
+           "Each shape of an SVG says where it comes from: data-polygon, data-object, data-material, data-lights, data-area.\n\n"
            "examples:\n"
            "  gnomon vector town.yaml -o town.svg -o town.pdf\n"
            "  gnomon vector town.yaml --edges visible --edge-width 0.7 -o town.svg\n"

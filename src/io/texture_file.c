@@ -208,6 +208,7 @@ static gno_status load(gno_scene *scene, const gnoi_texture_request *q, int *ima
     }
     gnoi_raster_free(&r);
     if (status == GNO_ERROR_MEMORY) return gno_context_fail(context, status, "out of memory while reading a texture");
+    if (status != GNO_OK && !reason[0]) snprintf(reason, GNOI_TEXTURE_REASON, "%.390s", gno_context_message(context));
     return GNO_OK;
 }
 

@@ -1,11 +1,12 @@
 /* problems.c -- what is wrong with the polygons of a scene: see gnomon_problems.h.
  *
  * Place in the data flow: gno_scene -> measure.c (what each polygon is) -> vertices at one place as one -> sums of edges (duplicates)
- * -> edges sorted by their ends -> runs of equal edges: open, crowded, or a tie between two polygons (flipped) -> the caller's callback.
+ * -> edges sorted by their ends -> runs of equal edges: open, crowded, or a tie between two polygons (flipped, flat parts) -> the caller's callback.
  * Invariants: nothing of the scene changes but what preparing it sets; every loop is linear but for the sorting of edges by digits.
  * Sources: sums of pseudo-random numbers as in solid.c; ties by union-find that keeps the parity to the root (Tarjan and van Leeuwen 1984).
  */
 #include "base/sort.h"
+#include "base/tolerance.h"
 #include "scene/prepare.h"
 #include "scene/weld.h"
 
@@ -37,11 +38,21 @@ typedef struct search {
     edge_sum *sums;
     uint32_t *parent, *group_flips, *group_size; /* of each polygon; the latter two at roots */
     unsigned char *parity;                        /* 1: wound against its parent */
+    unsigned char *flat;                          /* at roots: the group lies in one plane */
+    vec3 *area;                                   /* at roots: sum of the polygons' vector areas, each wound as the root */
     size_t edge_count;
     edge *edges;
     gnoi_keyed *keys, *scratch; /* of edges or polygons, whichever are more */
     size_t key_room;
 } search;
+
+static uint32_t root_of(const search *s, uint32_t p, unsigned *parity);
+
+static int is_flat(const search *s, uint32_t p)
+{
+    unsigned parity;
+    return s->flat[root_of(s, p, &parity)];
+}
 
 static int report(search *s, gno_problem_kind kind, size_t polygon, long other, int from, int to)
 {
@@ -52,6 +63,7 @@ static int report(search *s, gno_problem_kind kind, size_t polygon, long other, 
     problem.other = other;
     problem.vertex[0] = from;
     problem.vertex[1] = to;
+    problem.border = kind == GNO_PROBLEM_OPEN_EDGE && is_flat(s, (uint32_t)polygon);
     return !s->found || s->found(s->user, &problem) == 0;
 }
 
@@ -303,6 +315,51 @@ static int find_flipped(search *s)
     return !gnoi_stopped(s->context);
 }
 
+/* ---- flat parts --------------------------------------------------------------------------------------------------------- */
+
+static vec3 corner_at(const gno_scene *scene, unsigned corner)
+{
+    return v3_from(scene->positions[scene->corner_vertex[corner]]);
+}
+
+/* Vector area of a polygon's outer ring. */
+static vec3 area_of(const gno_scene *scene, size_t p)
+{
+    unsigned ring = scene->polygon_start[p], first = scene->ring_start[ring], end = scene->ring_start[ring + 1];
+    vec3 sum = v3(0, 0, 0);
+    for (unsigned i = first + 1; i + 1 < end; i++) {
+        vec3 origin = corner_at(scene, first);
+        sum = v3_add(sum, v3_scale(v3_cross(v3_sub(corner_at(scene, i), origin), v3_sub(corner_at(scene, i + 1), origin)), 0.5));
+    }
+    return sum;
+}
+
+/* A group is flat when no corner leaves the plane across its area by more than what still counts as coplanar in the scene. */
+static int find_flat(search *s)
+{
+    const gno_scene *scene = s->scene;
+    unsigned parity;
+    for (size_t p = 0; p < scene->polygon_count; p++) {
+        uint32_t root = root_of(s, (uint32_t)p, &parity);
+        s->area[root] = v3_add(s->area[root], v3_scale(area_of(scene, p), parity ? -1 : 1));
+        s->flat[root] = 1;
+        if (gnoi_stopped_at(s->context, p)) {
+            return 0;
+        }
+    }
+    for (size_t p = 0; p < scene->polygon_count; p++) {
+        uint32_t root = root_of(s, (uint32_t)p, &parity);
+        vec3 n = v3_unit(s->area[root]), origin = corner_at(scene, scene->ring_start[scene->polygon_start[root]]);
+        for (unsigned i = scene->ring_start[scene->polygon_start[p]]; i < scene->ring_start[scene->polygon_start[p + 1]]; i++) {
+            s->flat[root] &= fabs(v3_dot(n, v3_sub(corner_at(scene, i), origin))) <= GNOI_COPLANAR * scene->prepared.scale;
+        }
+        if (gnoi_stopped_at(s->context, p)) {
+            return 0;
+        }
+    }
+    return 1;
+}
+
 /* ---- gaps and crowds --------------------------------------------------------------------------------------------------- */
 
 static int report_edge(search *s, gno_problem_kind kind, size_t i, long other)
@@ -353,6 +410,8 @@ static int allocate(search *s)
     s->kinds = gnoi_malloc(context, scene->polygon_count, 1);
     s->marks = gnoi_calloc(context, scene->polygon_count, 1);
     s->parity = gnoi_calloc(context, scene->polygon_count, 1);
+    s->flat = gnoi_calloc(context, scene->polygon_count, 1);
+    s->area = gnoi_calloc(context, scene->polygon_count, sizeof *s->area);
     s->parent = gnoi_malloc(context, scene->polygon_count, sizeof *s->parent);
     s->group_size = gnoi_calloc(context, scene->polygon_count, sizeof *s->group_size);
     s->group_flips = gnoi_calloc(context, scene->polygon_count, sizeof *s->group_flips);
@@ -361,7 +420,7 @@ static int allocate(search *s)
     s->edges = gnoi_malloc(context, scene->corner_count, sizeof *s->edges);
     s->keys = gnoi_malloc(context, s->key_room, sizeof *s->keys);
     s->scratch = gnoi_malloc(context, s->key_room, sizeof *s->scratch);
-    return s->kinds && s->marks && s->parity && s->parent && s->group_size && s->group_flips && s->sums && s->place &&
+    return s->kinds && s->marks && s->parity && s->flat && s->area && s->parent && s->group_size && s->group_flips && s->sums && s->place &&
            s->edges && s->keys && s->scratch;
 }
 
@@ -372,6 +431,8 @@ static void release(search *s)
     gnoi_free(context, s->kinds, scene->polygon_count, 1);
     gnoi_free(context, s->marks, scene->polygon_count, 1);
     gnoi_free(context, s->parity, scene->polygon_count, 1);
+    gnoi_free(context, s->flat, scene->polygon_count, 1);
+    gnoi_free(context, s->area, scene->polygon_count, sizeof *s->area);
     gnoi_free(context, s->parent, scene->polygon_count, sizeof *s->parent);
     gnoi_free(context, s->group_size, scene->polygon_count, sizeof *s->group_size);
     gnoi_free(context, s->group_flips, scene->polygon_count, sizeof *s->group_flips);
@@ -386,7 +447,7 @@ static int find_all(search *s)
 {
     mark_details(s);
     return report_kind(s, GNOI_EMPTY, GNO_PROBLEM_DEGENERATE) && report_kind(s, GNOI_SPLIT, GNO_PROBLEM_NON_PLANAR) &&
-           sum_all(s) && find_duplicates(s) && sort_edges(s) && tie_all(s) && find_flipped(s) &&
+           sum_all(s) && find_duplicates(s) && sort_edges(s) && tie_all(s) && find_flipped(s) && find_flat(s) &&
            report_edges(s, GNO_PROBLEM_OPEN_EDGE) && report_edges(s, GNO_PROBLEM_CROWDED_EDGE);
 }
 

@@ -91,8 +91,8 @@ run info --json scene.yaml; verdict 'info as JSON' eval 'done_well && grep -q "\
 # A tetrahedron with a turned face, a lost one, one given twice and one without area; the ground under it has four edges more.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 4 2\nf 2 3 4\nf 4 3 2\nf 2 2 2\n' >bad.obj
 run info bad.obj; verdict 'info names problems' eval 'done_well && grep -q "1 polygon without area, skipped: 4$" out &&
-    grep -q "1 polygon given before: 3 (as 2)" out && grep -q "1 polygon wound against neighbours: 1$" out && grep -q "7 edges open.*: 0 (0-2)" out'
-run info --json bad.obj; verdict 'info names problems in JSON' eval 'done_well && grep -q "\"degenerate\": 1, \"non_planar\": 0, \"duplicate\": 1, \"flipped\": 1, \"open_edges\": 7," out &&
+    grep -q "1 polygon given before: 3 (as 2)" out && grep -q "1 polygon wound against neighbours: 1$" out && grep -q "7 edges open.*, 4 of them where flat parts end: 0 (0-2)" out'
+run info --json bad.obj; verdict 'info names problems in JSON' eval 'done_well && grep -q "\"degenerate\": 1, \"non_planar\": 0, \"duplicate\": 1, \"flipped\": 1, \"open_edges\": 7, \"crowded_edges\": 0, \"border_edges\": 4," out &&
     grep -q "\"flipped\": \[1\]" out && grep -q "{\"polygon\": 3, \"of\": 2}" out'
 
 # ---- whole or not at all

@@ -43,6 +43,7 @@ for command in $commands; do
     verdict "options of $command" documented "$command"
     verdict "--help of $command has examples" eval '"$gnomon" $command --help | grep -A1 "^examples:" | grep -q "  gnomon $command"'
 done
+verdict 'options without a command' eval 'grep -q "^\.B .*version$" "$page" && grep -q "^\.B .*help$" "$page"'
 verdict 'version' grep -q "\"$("$gnomon" --version)\"" "$page"
 if command -v groff >/dev/null; then verdict 'groff has no warning' clean; else echo 'SKIP manual: groff: not installed'; fi
 verdict 'completion of a command' completes 'gnomon ren' render

@@ -95,6 +95,7 @@ static void test_spoilt_boxes(void **state)
     gno_scene *open = quads(context, (const int(*)[4])faces, 5);
     f = find(open);
     expect_counts(f, 0, 0, 0, 0, 4, 0);
+    assert_false(f->all[0].border);
     assert_int_equal(f->all[0].polygon, 0); /* edge 0-3, the lowest; its lower polygon passes it from 0 to 3 */
     assert_int_equal(f->all[0].vertex[0], 0);
     assert_int_equal(f->all[0].vertex[1], 3);
@@ -173,6 +174,39 @@ static void test_details_are_no_gaps(void **state)
     expect_counts(find(scene), 0, 0, 0, 0, 0, 0);
     gno_scene_destroy(scene);
     gno_context_destroy(context);
+}
+
+
+/* Two quadrilaterals that hang together, wound as given, folded or not, far from the origin or not: only a flat pair's edges are borders. */
+static void test_borders(void **state)
+{
+    static const int pair[2][4] = {{0, 1, 2, 3}, {1, 0, 4, 5}}, apart[2][4] = {{0, 1, 2, 3}, {1, 4, 5, 0}};
+    (void)state;
+    for (int way = 0; way < 16; way++) {
+        const double shift = way & 1 ? 1e6 : 0, lift = way & 2 ? 0.3 : 0, tilt = way & 4 ? 0.7 : 0;
+        const double p[6][3] = {{shift, 0, tilt * shift},       {shift + 1, 0, tilt * (shift + 1)},
+                                {shift + 1, 1, tilt * (shift + 1)}, {shift, 1, tilt * shift},
+                                {shift, -1, tilt * shift + lift}, {shift + 1, -1, tilt * (shift + 1) + lift}};
+        static const unsigned ring[3] = {0, 4, 8};
+        gno_context *context = new_context();
+        gno_mesh_def mesh = gno_mesh_def_default();
+        gno_scene *scene;
+        mesh.vertex_count = 6;
+        mesh.positions = p[0];
+        mesh.polygon_count = mesh.ring_count = 2;
+        mesh.ring_start = ring;
+        mesh.corner_count = 8;
+        mesh.corner_vertex = way & 8 ? apart[0] : pair[0];
+        assert_int_equal(gno_scene_create(context, &scene), GNO_OK);
+        assert_int_equal(gno_scene_add_mesh(scene, &mesh, NULL), GNO_OK);
+        const findings *f = find(scene);
+        assert_int_equal(f->counts[GNO_PROBLEM_OPEN_EDGE], 6);
+        for (size_t i = 0; i < f->count; i++) {
+            assert_int_equal(f->all[i].border, f->all[i].kind == GNO_PROBLEM_OPEN_EDGE && (lift == 0 || shift > 0));
+        }
+        gno_scene_destroy(scene);
+        gno_context_destroy(context);
+    }
 }
 
 /* A strip of triangles closed with a twist: no winding suits all. */
@@ -409,6 +443,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_spoilt_boxes),      cmocka_unit_test(test_seams),    cmocka_unit_test(test_details_are_no_gaps),
+        cmocka_unit_test(test_borders),
         cmocka_unit_test(test_moebius),           cmocka_unit_test(test_failures), cmocka_unit_test(test_against_slow_twin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
