@@ -450,7 +450,7 @@ typedef struct gno_render_def {
     int lines;      /* sample lines per pixel row at the finest; default 18 */
     int base_lines; /* sample lines everywhere; default 2. Equal to lines: no refinement. Else lines must be an odd multiple of
                        base_lines, base_lines at most 4, and pixels whose colour bends from line to line get all the lines */
-    double refine_above; /* bend (second difference, linear colour) that calls for more lines; default 0.02 */
+    double refine_above; /* bend (second difference, linear colour) that calls for more lines; default 0.03 */
     int threads;    /* 0 (default): one per processor */
     gno_terminator terminator;
     const gno_layers *layers; /* filled beside the picture; NULL (default): none */

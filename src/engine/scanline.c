@@ -14,7 +14,7 @@ gno_render_def gno_render_def_default(void)
     gno_render_def def;
     def.lines = 18;
     def.base_lines = 2;
-    def.refine_above = 0.02;
+    def.refine_above = 0.03;
     def.threads = 0;
     def.terminator = GNO_TERMINATOR_EXACT;
     def.layers = NULL;
@@ -159,6 +159,15 @@ static void set_mean(const gno_scene *scene, const gno_material *m, gnoi_tone *t
         tone->mean[k] = value[3] > 0 ? value[k] / value[3] : 0;
 }
 
+static float largest(const float rgb[3])
+{
+    float most = rgb[0] > rgb[1] ? rgb[0] : rgb[1];
+    return most > rgb[2] ? most : rgb[2];
+}
+
+/* The share of a highlight below which its bending is not seen. */
+#define LEAST_HIGHLIGHT 0.02
+
 /* The scene's materials in single precision; NULL when memory fails. */
 static gnoi_tone *make_tones(const gno_scene *scene)
 {
@@ -171,6 +180,8 @@ static gnoi_tone *make_tones(const gno_scene *scene)
             tones[i].specular[k] = (float)m->specular[k];
         }
         tones[i].shininess = (float)m->shininess;
+        tones[i].glint = 2 * tones[i].shininess * largest(tones[i].specular);
+        tones[i].glint_edge = m->shininess > 0 ? (float)pow(LEAST_HIGHLIGHT, 1 / m->shininess) : 0;
         tones[i].textured = m->texture.kind != GNO_TEXTURE_NONE;
         tones[i].has_holes = gnoi_has_holes(scene, m);
         tones[i].bumped = m->bump.kind != GNO_BUMP_NONE;

@@ -274,11 +274,13 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
     if (tile->failed)
         return 0;
     tile->judging = job->def.lines > job->def.base_lines;
+    tile->pixel_share = 1 / (float)job->def.base_lines;
     add_base_lines(tile);
     gnoi_tile_draw(tile, count);
     make_rows(tile);
     tile->judging = 0;
     if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile, mark_bends, RUN_GAP)) {
+        tile->pixel_share = 1 / (float)(job->def.lines - job->def.base_lines);
         gnoi_tile_draw(tile, count);
         make_rows(tile);
     }

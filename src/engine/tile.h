@@ -26,6 +26,8 @@
 /* A material in single precision, `ambient` times the scene's ambient light. */
 typedef struct gnoi_tone {
     float ambient[3], diffuse[3], specular[3], shininess;
+    float glint;      /* the error of a highlight by the variance of the normal's angle: 2 n, times the largest specular factor */
+    float glint_edge; /* R.S from which on a highlight counts */
     int textured, bumped, has_holes;
     int one_place; /* the bump lies where the texture does */
     float mean[3]; /* of the texture, where it is a picture; else all zero */
@@ -182,6 +184,7 @@ typedef struct gnoi_tile {
     float row_cover[GNOI_TILE_W], row_by_line[GNOI_BASE_LINES][GNOI_TILE_W];
     int judging;                           /* base lines are being made for refinement: colours are kept by line */
     gnoi_batch batch;
+    float pixel_share;                     /* of a pixel that a line stands for among those being made */
     size_t intensity_count, intensity_capacity;
     double (*intensities)[3];
     size_t mapping_count, mapping_capacity;
@@ -301,6 +304,12 @@ int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
  * on the light. Flushed when the batch is full. */
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint);
 void gnoi_tile_flush(gnoi_tile *tile);
+
+/* tile_glint.c: sample i of the batch, which is of phong shading and lies at (x,y) of the picture: the points it is to be lit in, all of one
+ * weight, to `at`; returns their number, a square, or 1 (and `at` is left alone) where its middle will do. */
+#define GNOI_GLINT_POINTS 16 /* at most */
+#define GNOI_GLINT_ERROR 0.003f /* smaller ones are left, in units of the picture */
+int gnoi_tile_glint(const gnoi_tile *tile, const gnoi_slot *slot, int i, int row, int column, double x, double y, double (*at)[2]);
 
 /* tile_layers.c: keeps what tile.cells and tile.lit hold of a pixel of `slot` in `row`; writes the tile's part of the layers from
  * all that was kept. init returns 0 when memory fails; free in any case. */

@@ -266,6 +266,58 @@ static void set_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
         tile->even[k][i] = tone->mean[k];
 }
 
+/* ---- one sample in several points ------------------------------------------------------------------------------------ */
+
+/* Sample `to` as sample `from`, but for its place. */
+static void copy_sample(gnoi_tile *tile, int to, int from)
+{
+    gnoi_batch *b = &tile->batch;
+    for (int k = 0; k < 3; k++) {
+        b->kd[k][to] = b->kd[k][from];
+        b->ks[k][to] = b->ks[k][from];
+        b->rgb[k][to] = b->rgb[k][from];
+        tile->even[k][to] = tile->even[k][from];
+        for (int l = 0; l < GNOI_BASE_LINES; l++)
+            tile->share_by_line[l][k][to] = tile->share_by_line[l][k][from];
+    }
+    for (int l = 0; l < GNOI_BASE_LINES; l++)
+        tile->cover_by_line[l][to] = tile->cover_by_line[l][from];
+    for (int j = 0; j < tile->job->lamp_count; j++)
+        b->weight[(size_t)j * GNOI_BATCH + (size_t)to] = b->weight[(size_t)j * GNOI_BATCH + (size_t)from];
+    b->shininess[to] = b->shininess[from];
+    b->coverage[to] = b->coverage[from];
+    b->tag[to] = b->tag[from];
+    tile->texel_of[to] = tile->texel_of[from];
+}
+
+/* Lights the last sample of the batch in `count` points, each for an equal part of it. */
+static void spread_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double (*at)[2], int count)
+{
+    const gnoi_frame_job *job = tile->job;
+    gnoi_batch *b = &tile->batch;
+    int first = b->count;
+    float part = 1 / (float)count;
+    for (int k = 0; k < 3; k++)
+        b->rgb[k][first] *= part;
+    for (int j = 0; j < job->lamp_count; j++)
+        b->weight[(size_t)j * GNOI_BATCH + (size_t)first] *= part;
+    for (int i = 0; i < count; i++) {
+        if (i > 0)
+            copy_sample(tile, first + i, first);
+        set_point(b, first + i, &job->view, &slot->receiver.nearness, at[i][0], at[i][1]);
+        set_normal(tile, first + i, slot, row, column, at[i][0], at[i][1]);
+    }
+    b->count += count - 1;
+}
+
+/* Whether a sample's highlight may bend enough: a bound, for most samples. A box varies by a twelfth of its side squared along either axis,
+ * and its sides are at most as its area. */
+static inline int may_glint(const gnoi_tile *tile, const gnoi_slot *slot, const gnoi_tone *tone, float coverage)
+{
+    float share = coverage * tile->pixel_share;
+    return slot->interp.turn * share * share * tone->glint > 12 * GNOI_GLINT_ERROR;
+}
+
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint)
 {
     const gnoi_frame_job *job = tile->job;
@@ -295,6 +347,12 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     for (int l = 0; l < job->def.base_lines && tile->judging; l++)
         tile->cover_by_line[l][i] = cells->by_line[l][column];
     b->tag[i] = (uint32_t)(row * GNOI_TILE_W + column);
-    if (++b->count == GNOI_BATCH)
+    if (slot->receiver.poly->shading == GNO_SHADING_PHONG && may_glint(tile, slot, tone, coverage)) {
+        double at[GNOI_GLINT_POINTS][2];
+        int points = gnoi_tile_glint(tile, slot, i, row, column, x, y, at);
+        if (points > 1)
+            spread_sample(tile, slot, row, column, at, points);
+    }
+    if (++b->count > GNOI_BATCH - GNOI_GLINT_POINTS)
         gnoi_tile_flush(tile);
 }

@@ -23,7 +23,8 @@ static void set_weights(gnoi_interp *interp, const gno_scene *scene, const gnoi_
     for (int i = 0; i < 3; i++)
         v[i] = homogeneous(scene, view, interp->corner[i]);
     c = v3_cross(v[1], v[2]);
-    sign = v3_dot(c, v[0]) < 0 ? -1 : 1;
+    interp->scale = v3_dot(c, v[0]) / v[0].z;
+    sign = interp->scale * v[0].z < 0 ? -1 : 1;
     interp->weight[0] = screen_plane(v3_scale(c, sign));
     interp->weight[1] = screen_plane(v3_scale(v3_cross(v[2], v[0]), sign));
     interp->weight[2] = screen_plane(v3_scale(v3_cross(v[0], v[1]), sign));
@@ -32,6 +33,8 @@ static void set_weights(gnoi_interp *interp, const gno_scene *scene, const gnoi_
 static void set_normals(gnoi_interp *interp, const gno_scene *scene)
 {
     const gnoi_prepared *prep = &scene->prepared;
+    double turn = 0;
+    interp->turn = 0;
     if (!prep->corner_normal || prep->corner_normal[interp->corner[0]] == GNOI_NONE)
         return;
     for (int k = 0; k < 3; k++) {
@@ -43,7 +46,9 @@ static void set_normals(gnoi_interp *interp, const gno_scene *scene)
             sum.f0 += interp->weight[i].f0 * n;
         }
         interp->normal[k] = sum;
+        turn += sum.fx * sum.fx + sum.fy * sum.fy;
     }
+    interp->turn = (float)(turn / (interp->scale * interp->scale));
 }
 
 static void set_triangle(gnoi_interp *interp, const gno_scene *scene, const gnoi_view *view, const gnoi_poly *poly, uint32_t triangle)

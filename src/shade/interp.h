@@ -17,7 +17,9 @@ typedef struct gnoi_interp {
     uint32_t triangle_count, triangle; /* the one set now */
     uint32_t corner[3];                /* its corners in the prepared corner arrays */
     gnoi_screen_plane weight[3];       /* proportional to the corners' weights, >= 0 inside */
+    double scale;                      /* of the first weight at the first corner, where the interpolated normal is as long */
     gnoi_screen_plane normal[3];       /* x, y, z of the interpolated normal, any length */
+    float turn;                        /* the angle by which it turns from a pixel to the next, squared: a bound, at the first corner */
 } gnoi_interp;
 
 /* Makes `interp` valid for picture point (x,y) of `poly`: picks the triangle that holds it, or the nearest. */
