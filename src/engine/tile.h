@@ -311,6 +311,13 @@ void gnoi_tile_flush(gnoi_tile *tile);
 #define GNOI_GLINT_ERROR 0.003f /* smaller ones are left, in units of the picture */
 int gnoi_tile_glint(const gnoi_tile *tile, const gnoi_slot *slot, int i, int row, int column, double x, double y, double (*at)[2]);
 
+/* Whether a highlight may bend enough for that in a sample of this share of a pixel: a bound, by which most samples are passed over. A box varies by
+ * a twelfth of its side squared along either axis, and its sides squared are taken to be as its area. */
+static inline int gnoi_may_glint(const gnoi_slot *slot, const gnoi_tone *tone, float share)
+{
+    return slot->interp.turn * share * share * tone->glint > 12 * GNOI_GLINT_ERROR;
+}
+
 /* tile_layers.c: keeps what tile.cells and tile.lit hold of a pixel of `slot` in `row`; writes the tile's part of the layers from
  * all that was kept. init returns 0 when memory fails; free in any case. */
 int gnoi_tile_layers_init(gnoi_tile *tile);

@@ -1,7 +1,7 @@
 /* tile_run.c -- samples of a surface in neighbouring pixels, set up side by side by vector code: see tile.h.
  *
  * The numbers are those of gnoi_tile_sample, bit by bit, which serves all that is rarer: textures, bumps, tints, intensities taken once,
- * lamps that reach a part of a pixel.
+ * highlights that bend within a pixel, lamps that reach a part of one.
  */
 #include "base/vector.h"
 #include "engine/tile.h"
@@ -175,7 +175,7 @@ int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
     for (int p = first; p <= last; p++)
         if (!(tile->cells.length[p] > 0))
             return 0;
-    if (c.normal && !seek(tile, slot, &c, first, last))
+    if (c.normal && (!seek(tile, slot, &c, first, last) || gnoi_may_glint(slot, c.tone, 1)))
         return 0;
     for (int p = first; p <= last; p += STEP) {
         if (b->count > GNOI_BATCH - STEP)
@@ -187,7 +187,7 @@ int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
         set_rest(tile, columns, row, p, b->count);
         b->count += last - p + 1 < STEP ? last - p + 1 : STEP;
     }
-    if (b->count == GNOI_BATCH)
+    if (b->count > GNOI_BATCH - GNOI_GLINT_POINTS)
         gnoi_tile_flush(tile);
     return 1;
 }

@@ -310,14 +310,6 @@ static void spread_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column,
     b->count += count - 1;
 }
 
-/* Whether a sample's highlight may bend enough: a bound, for most samples. A box varies by a twelfth of its side squared along either axis,
- * and its sides are at most as its area. */
-static inline int may_glint(const gnoi_tile *tile, const gnoi_slot *slot, const gnoi_tone *tone, float coverage)
-{
-    float share = coverage * tile->pixel_share;
-    return slot->interp.turn * share * share * tone->glint > 12 * GNOI_GLINT_ERROR;
-}
-
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint)
 {
     const gnoi_frame_job *job = tile->job;
@@ -347,7 +339,7 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     for (int l = 0; l < job->def.base_lines && tile->judging; l++)
         tile->cover_by_line[l][i] = cells->by_line[l][column];
     b->tag[i] = (uint32_t)(row * GNOI_TILE_W + column);
-    if (slot->receiver.poly->shading == GNO_SHADING_PHONG && may_glint(tile, slot, tone, coverage)) {
+    if (slot->receiver.poly->shading == GNO_SHADING_PHONG && gnoi_may_glint(slot, tone, coverage * tile->pixel_share)) {
         double at[GNOI_GLINT_POINTS][2];
         int points = gnoi_tile_glint(tile, slot, i, row, column, x, y, at);
         if (points > 1)
