@@ -305,6 +305,10 @@ int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
 void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, const gnoi_cells *cells, const float *tint);
 void gnoi_tile_flush(gnoi_tile *tile);
 
+/* tile_shade.c: before the samples of a slot in a pixel. Colours add up in the order of the samples, whenever the batch is flushed: what is
+ * in it of this pixel goes first where the slot's samples pass it by. */
+void gnoi_tile_keep_order(gnoi_tile *tile, const gnoi_slot *slot, int row, int column);
+
 /* tile_glint.c: sample i of the batch, which is of phong shading and lies at (x,y) of the picture: the points it is to be lit in, all of one
  * weight, to `at`; returns their number, a square, or 1 (and `at` is left alone) where its middle will do. */
 #define GNOI_GLINT_POINTS 16 /* at most */

@@ -187,8 +187,10 @@ static void sample_lit(gnoi_tile *tile, gnoi_slot *slot, int row, int pixel, int
 void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel)
 {
     int lamps = tile->job->lamp_count;
-    float cover = tile->cells.length[pixel], *weight = tile->batch.weight + tile->batch.count, all[3] = {cover, cover, cover};
+    float cover = tile->cells.length[pixel], *weight, all[3] = {cover, cover, cover};
     unsigned parts = 0;
+    gnoi_tile_keep_order(tile, slot, row, pixel);
+    weight = tile->batch.weight + tile->batch.count;
     for (int k = 0; k < 3 && tile->veiled; k++)
         all[k] = tile->veil.sum[k][pixel];
     for (int j = 0; j < lamps; j++) {

@@ -95,6 +95,16 @@ void gnoi_tile_flush(gnoi_tile *tile)
     b->count = 0;
 }
 
+void gnoi_tile_keep_order(gnoi_tile *tile, const gnoi_slot *slot, int row, int column)
+{
+    uint32_t pixel = (uint32_t)(row * GNOI_TILE_W + column);
+    int pending = 0;
+    for (int i = 0; i < tile->batch.count && is_precomputed(slot); i++)
+        pending |= tile->batch.tag[i] == pixel;
+    if (pending)
+        gnoi_tile_flush(tile);
+}
+
 /* ---- intensities taken once ---------------------------------------------------------------------------------------- */
 
 /* The mean of the outer ring's area. */
