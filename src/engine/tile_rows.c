@@ -212,14 +212,14 @@ void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column 
 
 static void sample_pixels(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last)
 {
-    for (int pixel = first; pixel <= last && !tile->failed; pixel++) {
-        if (!(tile->cells.length[pixel] > 0))
-            continue;
-        if (tile->job->layers)
+    for (int pixel = first; pixel <= last && tile->job->layers; pixel++)
+        if (tile->cells.length[pixel] > 0)
             gnoi_tile_layers_keep(tile, (uint32_t)(slot - tile->slots), columns, row, pixel);
-        if (!tile->fragments.alone)
+    if (tile->fragments.alone || tile->failed || gnoi_tile_sample_run(tile, slot, columns, row, first, last))
+        return;
+    for (int pixel = first; pixel <= last && !tile->failed; pixel++)
+        if (tile->cells.length[pixel] > 0)
             gnoi_tile_sample_pixel(tile, slot, columns, row, pixel);
-    }
 }
 
 static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
@@ -253,7 +253,7 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
     for (int i = 0; i < tile->job->def.base_lines && tile->judging; i++)
         for (int pixel = first; pixel <= last; pixel++)
             tile->row_by_line[i][pixel] += tile->cells.by_line[i][pixel];
-    if (!tile->failed && !gnoi_tile_sample_run(tile, slot, columns, row, first, last))
+    if (!tile->failed)
         sample_pixels(tile, slot, columns, row, first, last);
     if (!slot->receiver.poly->opaque)
         gnoi_tile_uncover(tile, first, last);

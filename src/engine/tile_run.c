@@ -134,7 +134,7 @@ static int is_plain(const gnoi_tile *tile, const gnoi_slot *slot, const gnoi_col
 {
     const gnoi_poly *poly = slot->receiver.poly;
     int plain = (poly->shading == GNO_SHADING_FLAT || poly->shading == GNO_SHADING_PHONG) && !tile->job->textured && !tile->tinted &&
-                !tile->veiled && !tile->job->layers && !tile->job->tones[poly->material].bumped;
+                !tile->veiled && !tile->job->tones[poly->material].bumped;
     for (int j = 0; j < tile->job->lamp_count; j++)
         plain &= columns[j].state != GNOI_COLUMN_SPLIT;
     return plain;
