@@ -1,26 +1,19 @@
 /* bins.c -- see bins.h. Two passes over the polygons in fixed chunks: count by tile, then fill. */
 #include "scan/bins.h"
 #include "base/parallel.h"
-#include "scan/lanes.h"
+#include "scan/ranges.h"
 #include <string.h>
 
 #define CHUNK 8192
 #define VERTEX_CHUNK 32768
 
-typedef struct tile_range {
-    uint16_t x0, y0, x1, y1; /* tiles, both ends included; x0 > x1: none */
-    uint32_t key;            /* for all tiles, or LARGE and the least key in any */
-} tile_range;
-
-#define LARGE 0x80000000u
-
 typedef struct job {
     const gno_scene *scene;
     const gnoi_view *view;
     gnoi_bins *bins;
-    int lines;
+    gnoi_tile_grid grid;
     size_t chunk_count, tile_count;
-    tile_range *ranges;
+    gnoi_tile_range *ranges;
     uint32_t *counts; /* chunk_count x tile_count: how many, then where the chunk's next item goes */
     gnoi_outline *outlines; /* one for each worker */
 } job;
@@ -59,22 +52,6 @@ static gno_status project_chunk(void *user, int worker, size_t piece)
     return GNO_OK;
 }
 
-/* 1 when a sample line lies in [y0, y1). */
-static int crosses_line(double y0, double y1, int lines) { return ceil(y0 * lines - 0.5) < ceil(y1 * lines - 0.5); }
-
-static uint16_t tile_index(double v, int size, int tiles)
-{
-    double t = floor(v / size);
-    return (uint16_t)(t < 0 ? 0 : t > tiles - 1 ? tiles - 1 : t);
-}
-
-/* Bounds of a polygon in the picture. */
-typedef struct bounds {
-    gnoi_rect box;
-    float nearest;
-    int cut;
-} bounds;
-
 uint32_t gnoi_nearness_key(float nearness, int opaque)
 {
     union { float f; uint32_t i; } u = {nearness};
@@ -99,69 +76,66 @@ gnoi_rect gnoi_tile_rect(const gnoi_view *view, int x, int y)
     return r;
 }
 
-static tile_range range_of(const job *j, const gnoi_poly *poly, const bounds *o)
+/* The range of a polygon that is no triangle near the picture. Returns 0 when memory fails. */
+static int bound_outline(const job *j, size_t i, gnoi_outline *outline, gnoi_tile_range *range)
 {
-    tile_range none = {1, 1, 0, 0, 0}, r;
-    const gnoi_bins *b = j->bins;
-    if (!(o->box.x1 > 0) || !(o->box.x0 < j->view->width) || !(o->box.y1 > -0.5) || !(o->box.y0 < j->view->height + 0.5) ||
-        !crosses_line(o->box.y0, o->box.y1, j->lines))
-        return none;
-    r.x0 = tile_index(o->box.x0 - 1e-3, GNOI_TILE_W, b->tiles_x);
-    r.x1 = tile_index(o->box.x1 + 1e-3, GNOI_TILE_W, b->tiles_x);
-    r.y0 = tile_index(o->box.y0 - 0.5, GNOI_TILE_H, b->tiles_y);
-    r.y1 = tile_index(o->box.y1 + 0.5, GNOI_TILE_H, b->tiles_y);
-    r.key = gnoi_nearness_key(o->cut ? HUGE_VALF : o->nearest, poly->opaque);
-    if (o->cut || gnoi_is_large(o->box.x1 - o->box.x0, o->box.y1 - o->box.y0))
-        r.key |= LARGE;
-    return r;
+    gnoi_rect box;
+    if (!gnoi_outline_set(outline, j->scene, j->view, j->bins->vertices, &j->scene->prepared.polys[i]))
+        return 0;
+    box.x0 = outline->count < 3 ? HUGE_VAL : outline->x0;
+    box.x1 = outline->x1;
+    box.y0 = outline->y0;
+    box.y1 = outline->y1;
+    *range = gnoi_tile_range_of(&j->grid, &box, outline->cut ? HUGE_VALF : outline->z1);
+    range->key |= outline->cut ? GNOI_LARGE : 0;
+    return 1;
 }
 
-/* Bounds of polygon i, which is in `lane`; nothing where nothing of it can be seen. Returns 0 when memory fails. */
-static int bound_polygon(const job *j, const gnoi_lanes *lanes, unsigned lane, size_t i, gnoi_outline *outline, bounds *to)
+/* Whether records need not be looked at: all polygons of the chunk are opaque triangles. */
+static int is_plain(const gnoi_prepared *prep, size_t i)
 {
-    const gnoi_poly *poly = &j->scene->prepared.polys[i];
-    double reach = gnoi_outline_reach(j->view);
-    gnoi_rect box = {lanes->x0[lane], lanes->y0[lane], lanes->x1[lane], lanes->y1[lane]};
-    to->box = box;
-    to->nearest = lanes->z1[lane];
-    to->cut = 0;
-    if (poly->corner_count == 3 && box.x0 >= -reach && box.x1 <= reach && box.y0 >= -reach && box.y1 <= reach)
-        return 1;
-    if (!gnoi_outline_set(outline, j->scene, j->view, j->bins->vertices, poly))
-        return 0;
-    to->box.x0 = outline->count < 3 ? HUGE_VAL : outline->x0;
-    to->box.y0 = outline->y0;
-    to->box.x1 = outline->x1;
-    to->box.y1 = outline->y1;
-    to->nearest = outline->z1;
-    to->cut = outline->cut;
+    return prep->chunk_corner[i / GNOI_CHUNK] != GNOI_NONE && prep->chunk_opaque[i / GNOI_CHUNK];
+}
+
+/* The ranges of the `count` polygons from i on. Returns 0 when memory fails. */
+static int bound_polygons(const job *j, size_t i, unsigned count, gnoi_outline *outline, gnoi_tile_range range[GNOI_LANES])
+{
+    const gnoi_prepared *prep = &j->scene->prepared;
+    const int plain = is_plain(prep, i);
+    uint32_t index[GNOI_LANES] = {0};
+    gnoi_lanes lanes;
+    unsigned within;
+    for (unsigned k = 0; k < count; k++)
+        index[k] = (uint32_t)(i + k);
+    gnoi_lanes_load(&lanes, prep, j->bins, index, count);
+    gnoi_lanes_bound(&lanes);
+    within = gnoi_tile_ranges(&j->grid, &lanes, range);
+    for (unsigned k = 0; k < count; k++) {
+        int near = within >> k & 1 && (plain || prep->polys[i + k].corner_count == 3);
+        if (!near && !bound_outline(j, i + k, outline, &range[k]))
+            return 0;
+        if (!plain && !prep->polys[i + k].opaque)
+            range[k].key |= GNOI_KEY_SEE_THROUGH;
+    }
     return 1;
 }
 
 static gno_status count_chunk(void *user, int worker, size_t piece)
 {
     job *j = user;
-    const gnoi_prepared *prep = &j->scene->prepared;
-    size_t end = (piece + 1) * CHUNK < prep->poly_count ? (piece + 1) * CHUNK : prep->poly_count;
+    const size_t polys = j->scene->prepared.poly_count, width = (size_t)j->bins->tiles_x;
+    size_t end = (piece + 1) * CHUNK < polys ? (piece + 1) * CHUNK : polys;
     uint32_t *counts = j->counts + piece * j->tile_count;
-    gnoi_lanes lanes;
-    for (size_t i = piece * CHUNK; i < end; i++) {
-        unsigned lane = (unsigned)(i % GNOI_LANES);
-        bounds b;
-        tile_range r;
-        if (lane == 0) {
-            uint32_t index[GNOI_LANES], count = end - i < GNOI_LANES ? (uint32_t)(end - i) : GNOI_LANES;
-            for (uint32_t k = 0; k < count; k++)
-                index[k] = (uint32_t)i + k;
-            gnoi_lanes_load(&lanes, prep, j->bins, index, count);
-            gnoi_lanes_bound(&lanes);
-        }
-        if (!bound_polygon(j, &lanes, lane, i, &j->outlines[worker], &b))
+    for (size_t i = piece * CHUNK; i < end; i += GNOI_LANES) {
+        const unsigned count = end - i < GNOI_LANES ? (unsigned)(end - i) : GNOI_LANES;
+        gnoi_tile_range range[GNOI_LANES];
+        if (!bound_polygons(j, i, count, &j->outlines[worker], range))
             return GNO_ERROR_MEMORY;
-        r = j->ranges[i] = range_of(j, &prep->polys[i], &b);
-        for (int y = r.y0; y <= r.y1 && r.x0 <= r.x1; y++)
-            for (int x = r.x0; x <= r.x1; x++)
-                counts[(size_t)y * (size_t)j->bins->tiles_x + (size_t)x]++;
+        memcpy(j->ranges + i, range, count * sizeof *range);
+        for (unsigned k = 0; k < count; k++)
+            for (size_t y = range[k].y0; y <= range[k].y1 && range[k].x0 <= range[k].x1; y++)
+                for (size_t x = range[k].x0; x <= range[k].x1; x++)
+                    counts[y * width + x]++;
     }
     return GNO_OK;
 }
@@ -188,10 +162,10 @@ static uint32_t key_in_tile(const job *j, size_t i, uint32_t key, int x, int y)
     const gnoi_poly *poly = &j->scene->prepared.polys[i];
     gnoi_rect rect = gnoi_tile_rect(j->view, x, y);
     uint32_t here;
-    if (!(key & LARGE))
+    if (!(key & GNOI_LARGE))
         return key;
     here = gnoi_nearness_key(gnoi_nearest_over(j->scene, j->view, poly, &rect), poly->opaque);
-    key &= ~LARGE;
+    key &= ~GNOI_LARGE;
     return here > key ? here : key;
 }
 
@@ -203,7 +177,7 @@ static gno_status fill_chunk(void *user, int worker, size_t piece)
     uint32_t *next = j->counts + piece * j->tile_count;
     (void)worker;
     for (size_t i = piece * CHUNK; i < end; i++) {
-        tile_range r = j->ranges[i];
+        gnoi_tile_range r = j->ranges[i];
         for (int y = r.y0; y <= r.y1 && r.x0 <= r.x1; y++)
             for (int x = r.x0; x <= r.x1; x++) {
                 gnoi_keyed *item = &j->bins->items[next[(size_t)y * (size_t)j->bins->tiles_x + (size_t)x]++];
@@ -273,12 +247,17 @@ gno_status gnoi_bins_build(const gno_scene *scene, const gnoi_view *view, int li
     j.scene = scene;
     j.view = view;
     j.bins = bins;
-    j.lines = lines;
     bins->tiles_x = (view->width + GNOI_TILE_W - 1) / GNOI_TILE_W;
     bins->tiles_y = (view->height + GNOI_TILE_H - 1) / GNOI_TILE_H;
     bins->vertex_count = scene->prepared.vertex_count;
     for (int k = 0; k < 3; k++)
         bins->middle = fmax(bins->middle, fabs(0.5 * (scene->prepared.lower[k] + scene->prepared.upper[k])));
+    j.grid.width = view->width;
+    j.grid.height = view->height;
+    j.grid.tiles_x = bins->tiles_x;
+    j.grid.tiles_y = bins->tiles_y;
+    j.grid.lines = lines;
+    j.grid.reach = gnoi_outline_reach(view);
     j.tile_count = (size_t)bins->tiles_x * (size_t)bins->tiles_y;
     j.chunk_count = (polys + CHUNK - 1) / CHUNK;
     threads = gnoi_thread_count(threads);

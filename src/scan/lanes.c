@@ -10,9 +10,10 @@ void gnoi_lanes_load(gnoi_lanes *lanes, const gnoi_prepared *prep, const gnoi_bi
     static const gnoi_vertex nowhere;
     lanes->count = count;
     for (unsigned i = 0; i < GNOI_LANES; i++) {
-        const gnoi_poly *poly = i < count ? &prep->polys[polys[i]] : NULL;
+        uint32_t corners = 0;
+        const uint32_t *vertex = i < count ? gnoi_corners_of(prep, polys[i], &corners) : NULL;
         for (unsigned k = 0; k < 3; k++) {
-            const gnoi_vertex *v = poly && poly->corner_count == 3 ? &bins->vertices[prep->corner_vertex[poly->corner + k]] : &nowhere;
+            const gnoi_vertex *v = corners == 3 ? &bins->vertices[vertex[k]] : &nowhere;
             lanes->x[k][i] = v->x;
             lanes->y[k][i] = v->y;
             lanes->z[k][i] = v->z;

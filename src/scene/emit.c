@@ -316,11 +316,12 @@ static gno_status polygon_chunk(void *user, int worker, size_t chunk)
     gnoi_prepared *out = w->out;
     place at = start_of(&w->chunks[chunk]);
     size_t end = chunk_end(w, chunk), seam = chunk * GNOI_CHUNK;
-    int closes = 1;
+    int closes = 1, opaque = 1;
     gno_status status = GNO_OK;
     (void)worker;
     for (size_t i = chunk * GNOI_CHUNK; i < end && !status; i++) {
         status = emit_polygon(w, i, &at);
+        opaque &= out->polys[i].opaque;
         closes &= out->polys[i].opaque && out->polys[i].two_sided && out->polys[i].ring_count == 1;
         if (is_seam(out, &out->polys[i], out->chunk_vertex[chunk]))
             out->seams[seam++] = (uint32_t)i;
@@ -328,6 +329,7 @@ static gno_status polygon_chunk(void *user, int worker, size_t chunk)
             status = GNO_ERROR_CANCELLED;
     }
     w->chunks[chunk].closes = closes;
+    out->chunk_opaque[chunk] = (unsigned char)opaque;
     if (seam < end)
         out->seams[seam] = GNOI_NONE;
     return status;

@@ -107,7 +107,8 @@ static gno_status number_corners(numbering *n)
     gno_context *context = w->scene->context;
     int normals = out->corner_normal && w->scene->normal_count > 0;
     gno_status status;
-    if (!n->vertex_source || !n->normal_number || !w->vertex_number || !w->normal_source || !out->chunk_vertex || !out->chunk_corner)
+    if (!n->vertex_source || !n->normal_number || !w->vertex_number || !w->normal_source || !out->chunk_vertex || !out->chunk_corner ||
+        !out->chunk_opaque)
         return GNO_ERROR_MEMORY;
     status = gnoi_parallel(context, w->threads, normals ? 2 : 1, "prepare", number_piece, n);
     if (status != GNO_OK)
@@ -132,6 +133,7 @@ gno_status gnoi_number_corners(gnoi_preparing *w)
     w->normal_source_count = normals + 1;
     w->out->chunk_vertex = gnoi_malloc(context, w->chunk_count + 1, sizeof *w->out->chunk_vertex);
     w->out->chunk_corner = gnoi_malloc(context, w->chunk_count + 1, sizeof *w->out->chunk_corner);
+    w->out->chunk_opaque = gnoi_malloc(context, w->chunk_count + 1, 1);
     w->out->chunk_count = w->chunk_count;
     status = number_corners(&n);
     gnoi_free(context, n.vertex_source, vertices + 1, sizeof *n.vertex_source);

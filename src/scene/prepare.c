@@ -20,6 +20,7 @@ void gnoi_prepared_free(gno_context *context, gnoi_prepared *prepared)
     gnoi_free(context, prepared->positions, prepared->vertex_capacity, sizeof *prepared->positions);
     gnoi_free(context, prepared->chunk_vertex, prepared->chunk_count + 1, sizeof *prepared->chunk_vertex);
     gnoi_free(context, prepared->chunk_corner, prepared->chunk_count + 1, sizeof *prepared->chunk_corner);
+    gnoi_free(context, prepared->chunk_opaque, prepared->chunk_count + 1, 1);
     gnoi_free(context, prepared->seams, prepared->seam_capacity, sizeof *prepared->seams);
     gnoi_free(context, prepared->joints, prepared->joint_capacity, sizeof *prepared->joints);
     gnoi_free(context, prepared->normals, prepared->normal_capacity, sizeof *prepared->normals);

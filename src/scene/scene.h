@@ -81,6 +81,7 @@ typedef struct gnoi_prepared {
     double (*positions)[3];     /* the scene's, those that corners use, each once, in the order of first use */
     size_t chunk_count;         /* runs of GNOI_CHUNK polygons; chunk_count + 1 elements of the following */
     uint32_t *chunk_corner;     /* first corner of each whose polygons are all triangles, else GNOI_NONE */
+    unsigned char *chunk_opaque; /* whether all polygons of each are opaque */
     uint32_t *chunk_vertex;     /* vertices before each: numbers from chunk_vertex[k] to chunk_vertex[k + 1] are first used in chunk k */
     size_t seam_count, seam_capacity;
     uint32_t *seams;            /* polygons that share a vertex with one of an earlier chunk, by rising number */

@@ -1,5 +1,5 @@
-/* test_lanes.c -- triangles side by side against the scalar code for polygons of any shape: the same numbers, bit by bit; and the keys
- * by which polygons of a tile are ordered.
+/* test_lanes.c -- triangles side by side against the scalar code for polygons of any shape: the same numbers, bit by bit; which tiles
+ * they touch; and the keys by which polygons of a tile are ordered.
  */
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +12,7 @@
 #include <string.h>
 
 #include "project/edge.h"
-#include "scan/lanes.h"
+#include "scan/ranges.h"
 
 #define WIDTH 24
 #define MOST ((WIDTH + 1.0) * GNOI_X_ONE)
@@ -189,12 +189,68 @@ static void keys_put_the_nearest_first(void **state)
     assert_true(gnoi_key_nearness(gnoi_nearness_key(HUGE_VALF, 1)) == HUGE_VALF);
 }
 
+/* Tiles by rounding, as their borders are drawn. */
+static int tile_at(double v, int size, int tiles)
+{
+    double t = floor(v / size);
+    return (int)(t < 0 ? 0 : t > tiles - 1 ? tiles - 1 : t);
+}
+
+static void check_range(const gnoi_tile_grid *g, const gnoi_rect *b, float z, const gnoi_tile_range *r)
+{
+    int lines = ceil(b->y0 * g->lines - 0.5) < ceil(b->y1 * g->lines - 0.5);
+    if (!lines || !(b->x1 > 0) || !(b->x0 < g->width) || !(b->y1 > -0.5) || !(b->y0 < g->height + 0.5)) {
+        assert_true(r->x0 > r->x1);
+        return;
+    }
+    assert_int_equal(r->x0, tile_at(b->x0 - 1e-3, GNOI_TILE_W, g->tiles_x));
+    assert_int_equal(r->x1, tile_at(b->x1 + 1e-3, GNOI_TILE_W, g->tiles_x));
+    assert_int_equal(r->y0, tile_at(b->y0 - 0.5, GNOI_TILE_H, g->tiles_y));
+    assert_int_equal(r->y1, tile_at(b->y1 + 0.5, GNOI_TILE_H, g->tiles_y));
+    assert_int_equal(r->key & ~GNOI_LARGE, gnoi_nearness_key(z, 1));
+    assert_int_equal((r->key & GNOI_LARGE) != 0, b->x1 - b->x0 > GNOI_TILE_W || b->y1 - b->y0 > GNOI_TILE_H);
+}
+
+static void ranges_are_the_tiles_of_the_bounds(void **state)
+{
+    gnoi_tile_grid g = {100, 80, 5, 3, 4, 800};
+    const gnoi_rect nothing = {HUGE_VAL, 0, -HUGE_VAL, 0}, all = {-HUGE_VAL, -HUGE_VAL, HUGE_VAL, HUGE_VAL};
+    gnoi_tile_range r = gnoi_tile_range_of(&g, &nothing, 1);
+    gnoi_lanes *l = malloc(sizeof *l);
+    (void)state;
+    assert_non_null(l);
+    assert_true(r.x0 > r.x1);
+    r = gnoi_tile_range_of(&g, &all, 1);
+    assert_true(r.x0 == 0 && r.x1 == 4 && r.y0 == 0 && r.y1 == 2 && (r.key & GNOI_LARGE));
+    for (int round = 0; round < 3000; round++) {
+        static const double sizes[4] = {0.2, 5, 60, 1200};
+        gnoi_tile_range range[GNOI_LANES];
+        unsigned within;
+        fill(l, sizes[round % 4]);
+        for (int k = 0; k < 3; k++)
+            for (int i = 0; i < GNOI_LANES; i++)
+                l->x[k][i] -= 48;
+        gnoi_lanes_bound(l);
+        within = gnoi_tile_ranges(&g, l, range);
+        for (int i = 0; i < GNOI_LANES; i++) {
+            const gnoi_rect b = {l->x0[i], l->y0[i], l->x1[i], l->y1[i]};
+            int far = b.x0 < -g.reach || b.x1 > g.reach || b.y0 < -g.reach || b.y1 > g.reach;
+            assert_int_equal(within >> i & 1, !far);
+            check_range(&g, &b, l->z1[i], &range[i]);
+            r = gnoi_tile_range_of(&g, &b, l->z1[i]);
+            assert_memory_equal(&r, &range[i], sizeof r);
+        }
+    }
+    free(l);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(crossings_are_those_of_single_edges),
         cmocka_unit_test(bounds_hold_the_corners),
         cmocka_unit_test(planes_are_those_of_the_view),
+        cmocka_unit_test(ranges_are_the_tiles_of_the_bounds),
         cmocka_unit_test(keys_put_the_nearest_first),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
