@@ -3,6 +3,9 @@
 #include "base/parallel.h"
 #include "shadow/lamp.h"
 
+/* Lamps up to which the vertices' places are kept for each. */
+#define FEW_LAMPS 4
+
 /* Entries of `halved` beyond which it is not worth its memory. */
 #define MOST_HALVED ((size_t)1 << 26)
 
@@ -26,7 +29,8 @@ static gno_status build_casters(void *user, int worker, size_t piece)
     job *j = user;
     (void)worker;
     return gnoi_casters_build(j->scene, &j->cache->lamps[piece],
-                              j->cache->solid_count ? j->cache->halved + piece * j->cache->solid_count : NULL, &j->cache->casters[piece]);
+                              j->cache->solid_count ? j->cache->halved + piece * j->cache->solid_count : NULL,
+                              j->cache->lamp_count <= FEW_LAMPS, &j->cache->casters[piece]);
 }
 
 /* Whether all that is in sight is seen from outside the solid: an orthographic view begins at a plane, which must not cut it. */

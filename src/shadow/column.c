@@ -321,12 +321,27 @@ int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi
     return gather(columns->scene, casters, NULL, columns->near, 0) && settle_group(view, casters, columns, group, count);
 }
 
+/* The box of the receiver's region on the light's plane; 0: it has the *box_count boxes instead. */
+static int bound_receiver(const gno_scene *scene, const gnoi_view *view, const gnoi_casters *casters, const gnoi_receiver *receiver,
+                          gnoi_lbox *box, gnoi_lbox boxes[6], int *box_count)
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    const gnoi_poly *poly = receiver->poly;
+    gnoi_region region;
+    if (casters->located && receiver->whole && poly->ring_count == 1 &&
+        gnoi_located_box(&casters->single.frame, casters->located, prep->corner_vertex + poly->corner, poly->corner_count, box))
+        return 1;
+    if (!gnoi_region_make(scene, view, &casters->single.frame, receiver, &region, boxes, box_count))
+        return 0;
+    *box = region.box;
+    return 1;
+}
+
 int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                      const gnoi_receiver *receiver, gnoi_columns *columns, gnoi_column *column)
 {
     struct gnoi_request *r;
-    gnoi_region region;
-    gnoi_lbox boxes[6];
+    gnoi_lbox box, boxes[6];
     gnoi_pair p;
     int box_count;
     columns->asked++;
@@ -341,7 +356,7 @@ int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_l
     columns->lamp = lamp;
     if (!(gnoi_lamp_side(lamp, receiver->poly->n, receiver->poly->d) * receiver->side > 0))
         return 1;
-    if (!gnoi_region_make(scene, view, &casters->single.frame, receiver, &region, boxes, &box_count))
+    if (!bound_receiver(scene, view, casters, receiver, &box, boxes, &box_count))
         return !gnoi_pair_make(&p, scene, view, lamp, receiver) || settle_apart(&p, view, casters, boxes, box_count, columns, column);
     if (!gnoi_reserve(columns->context, (void **)&columns->requests, &columns->request_capacity, REQUESTS, sizeof *columns->requests) ||
         (columns->request_count == REQUESTS && !gnoi_columns_finish(view, casters, columns)))
@@ -349,7 +364,7 @@ int gnoi_columns_ask(const gno_scene *scene, const gnoi_view *view, const gnoi_l
     r = &columns->requests[columns->request_count++];
     r->receiver = receiver;
     r->column = column;
-    r->box = region.box;
+    r->box = box;
     return 1;
 }
 

@@ -4,11 +4,17 @@
 
 static int collect_edges(const gno_scene *scene, const gnoi_casters *c, gnoi_boxes *boxes)
 {
+    const gnoi_frame *frame = &c->rim.frame;
     for (size_t i = 0; i < c->contour.count; i++) {
-        vec3 ends[2] = {v3_from(scene->prepared.positions[c->contour.edges[i].from]), v3_from(scene->prepared.positions[c->contour.edges[i].to])};
+        const uint32_t ends[2] = {c->contour.edges[i].from, c->contour.edges[i].to};
+        size_t n = 1;
         if (!gnoi_boxes_reserve(boxes, 6))
             return 0;
-        gnoi_boxes_take(boxes, (size_t)gnoi_frame_boxes(&c->rim.frame, ends, 2, boxes->box + boxes->count), (uint32_t)i);
+        if (!gnoi_located_box(frame, c->located, ends, 2, &boxes->box[boxes->count])) {
+            vec3 points[2] = {v3_from(scene->prepared.positions[ends[0]]), v3_from(scene->prepared.positions[ends[1]])};
+            n = (size_t)gnoi_frame_boxes(frame, points, 2, boxes->box + boxes->count);
+        }
+        gnoi_boxes_take(boxes, n, (uint32_t)i);
     }
     return 1;
 }
@@ -42,7 +48,13 @@ static int find_contour(const gno_scene *scene, const unsigned char *sides, cons
     return 1;
 }
 
-gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_casters *c)
+static void free_located(gno_context *context, gnoi_casters *c)
+{
+    gnoi_free(context, c->located, c->located_count, sizeof *c->located);
+    c->located = NULL;
+}
+
+gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, int keep, gnoi_casters *c)
 {
     const gnoi_prepared *prep = &scene->prepared;
     const size_t count = prep->poly_count + prep->cap_count;
@@ -51,12 +63,17 @@ gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, con
     memset(c, 0, sizeof *c);
     for (size_t i = 0; near_by && i < prep->joint_count; i++)
         near_by[prep->joints[i]] = 1;
-    if (sides && near_by)
-        status = gnoi_tree_build_casters(scene, lamp, halved, sides, near_by, &c->single, &c->far);
+    c->single.frame = c->far.frame = gnoi_frame_make(lamp, prep->lower, prep->upper);
+    c->located = gnoi_locate_vertices(scene, &c->far.frame);
+    c->located_count = prep->vertex_count;
+    if (sides && near_by && c->located)
+        status = gnoi_tree_build_casters(scene, lamp, halved, c->located, sides, near_by, &c->single, &c->far);
     if (!status && c->far.entry_count)
         status = find_contour(scene, sides, near_by, count, c) ? build_rim(scene, c) : GNO_ERROR_MEMORY;
     gnoi_free(scene->context, sides, count, 1);
     gnoi_free(scene->context, near_by, prep->vertex_count, 1);
+    if (!keep)
+        free_located(scene->context, c);
     if (status)
         gnoi_casters_free(scene->context, c);
     return status;
@@ -68,4 +85,5 @@ void gnoi_casters_free(gno_context *context, gnoi_casters *c)
     gnoi_tree_free(context, &c->far);
     gnoi_tree_free(context, &c->rim);
     gnoi_boundary_free(context, &c->contour);
+    free_located(context, c);
 }

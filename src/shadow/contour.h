@@ -13,6 +13,7 @@
 #define GNOI_SHADOW_CONTOUR_H
 
 #include "scene/boundary.h"
+#include "shadow/located.h"
 #include "shadow/tree.h"
 
 typedef struct gnoi_casters {
@@ -20,10 +21,12 @@ typedef struct gnoi_casters {
     gnoi_tree far;    /* far sides of halved solids */
     gnoi_tree rim;    /* the contour edges */
     gnoi_boundary contour;
+    gnoi_located *located; /* every vertex on the light's plane; NULL: not kept */
+    size_t located_count;
 } gnoi_casters;
 
-/* halved: see tree.h. */
-gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, gnoi_casters *casters);
+/* halved: see tree.h. keep: so is what serves receivers too, the vertices' places. */
+gno_status gnoi_casters_build(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, int keep, gnoi_casters *casters);
 void gnoi_casters_free(gno_context *context, gnoi_casters *casters);
 
 #endif

@@ -12,6 +12,7 @@
 #define GNOI_SHADOW_TREE_H
 
 #include "shadow/leaf.h"
+#include "shadow/located.h"
 
 #define GNOI_TREE_FAN GNOI_EIGHT
 #define GNOI_TREE_LEVELS 12
@@ -77,10 +78,12 @@ typedef enum gnoi_caster_side {
 /* Builds two trees of casters: the far sides of halved solids, without leaves, and whatever belongs to no halved solid. `halved` (one
  * for each solid, or NULL: none is) tells of which solids the polygons facing one way are enough: where eye and lamp are both
  * outside a closed solid, every path from the lamp to a point in sight crosses as many of its polygons outwards as inwards, so the
- * far sides cast the whole shadow. The trees are to be freed in any case. Left behind: sides, a gnoi_caster_side for each polygon and each cap;
+ * far sides cast the whole shadow. located: the scene's vertices on the trees' frame, which the caller has set in both, all else of them
+ * zero. The trees are to be freed in any case. Left behind: sides, a gnoi_caster_side for each polygon and each cap;
  * near_by, 1 for each vertex of a near side. */
-gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, unsigned char *sides,
-                                   unsigned char *near_by, gnoi_tree *single, gnoi_tree *far);
+gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved,
+                                   const gnoi_located *located, unsigned char *sides, unsigned char *near_by, gnoi_tree *single,
+                                   gnoi_tree *far);
 void gnoi_tree_free(gno_context *context, gnoi_tree *tree);
 
 /* A growing list of polygon numbers. */

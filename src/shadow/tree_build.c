@@ -2,7 +2,6 @@
  *
  * Place in the data flow: prepared polygons -> their sides; vertices on the light's plane (located.h) -> boxes -> gnoi_tree_pack.
  */
-#include "shadow/located.h"
 #include "shadow/tree.h"
 #include <string.h>
 
@@ -182,22 +181,14 @@ gno_status gnoi_tree_build_part(const gno_scene *scene, const gnoi_lamp *lamp, g
     return status;
 }
 
-gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved, unsigned char *sides,
-                                   unsigned char *near_by, gnoi_tree *single, gnoi_tree *far)
+gno_status gnoi_tree_build_casters(const gno_scene *scene, const gnoi_lamp *lamp, const unsigned char *halved,
+                                   const gnoi_located *located, unsigned char *sides, unsigned char *near_by, gnoi_tree *single,
+                                   gnoi_tree *far)
 {
-    const gnoi_prepared *prep = &scene->prepared;
-    gnoi_located *located;
-    gno_status status = GNO_ERROR_MEMORY;
     size_t counts[GNOI_CASTS_NEAR + 1] = {0};
-    memset(single, 0, sizeof *single);
-    memset(far, 0, sizeof *far);
-    single->frame = far->frame = gnoi_frame_make(lamp, prep->lower, prep->upper);
+    gno_status status;
     if (!tell_sides(scene, lamp, halved, sides, near_by, counts))
-        return status;
-    located = gnoi_locate_vertices(scene, &far->frame);
+        return GNO_ERROR_MEMORY;
     status = build(scene, located, sides, GNOI_CASTS, counts[GNOI_CASTS], 1, single);
-    if (!status)
-        status = build(scene, located, sides, GNOI_CASTS_FAR, counts[GNOI_CASTS_FAR], 0, far);
-    gnoi_free(scene->context, located, prep->vertex_count, sizeof *located);
-    return status;
+    return status ? status : build(scene, located, sides, GNOI_CASTS_FAR, counts[GNOI_CASTS_FAR], 0, far);
 }

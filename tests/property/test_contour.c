@@ -116,7 +116,7 @@ static void contours_are_boundaries_of_far_sides(void **state)
         assert_int_equal(scene->prepared.solid_count, 1);
         assert_true(scene->prepared.solids[0].closed);
         gnoi_lamps_fill(scene, &lamp);
-        assert_int_equal(gnoi_casters_build(scene, &lamp, halved, &casters), GNO_OK);
+        assert_int_equal(gnoi_casters_build(scene, &lamp, halved, 0, &casters), GNO_OK);
         check_contour(scene, &casters, scene->prepared.problems.degenerate == 0);
         edges += casters.contour.count;
         joints += scene->prepared.joint_count;
