@@ -44,7 +44,7 @@ VECTOR_CLONES static void find_squares(const gnoi_views *restrict a, int count, 
     for (int i = 0; i < count; i++) {
         double wide = fabs(q->sx[i]) + fabs(q->sy[i]), high = fabs(q->tx[i]) + fabs(q->ty[i]), length = wide * wide + high * high;
         double turn = fabs(q->sx[i] * q->ty[i] - q->sy[i] * q->tx[i]), bend = fabs(q->wx[i]) + fabs(q->wy[i]);
-double plain = a->period[i] >= 0 ? 1 : 0;
+        double plain = a->period[i] >= 0 ? 1 : 0;
         plain = a->w[i] > 0 ? plain : 0;
         plain = (wide + 1) * (high + 1) <= GNOI_FEW_CELLS ? plain : 0;
         plain = turn > GNOI_LEAST_TURN * length ? plain : 0;

@@ -484,9 +484,9 @@ static void shade(const oracle *o, const lamp *l, const face *a, const double po
 }
 
 /* Adds all lamps' light on a face's point, times what the faces before it let through, to the sample's colour, and their
- * shadow states to its hash. */
-static void light_point(const oracle *o, const face *a, const double point[3], const double direction[3], const double through[3],
-                        oracle_sample *s)
+ * shadow states to its hash. Its brightness is that of `lit`, a point of the same plane. */
+static void light_point(const oracle *o, const face *a, const double point[3], const double lit[3], const double direction[3],
+                        const double through[3], oracle_sample *s)
 {
     double plane[3];
     double side = dot(a->n, direction) > 0 ? -1 : 1;
@@ -500,7 +500,7 @@ static void light_point(const oracle *o, const face *a, const double point[3], c
         unit(to);
         /* light from behind the plane is the polygon's own shadow */
         if (dot(plane, to) > GRAZING && -dot(to, l->direction) >= l->cone) casters = passes(o, l, a, point, light);
-        shade(o, l, a, point, plane, colour);
+        shade(o, l, a, lit, plane, colour);
         if (l->l.softness > 0) s->state = mix(s->state, casters);
         for (int k = 0; k < 3; k++) {
             s->rgb[k] += through[k] * light[k] * colour[k];
@@ -523,10 +523,9 @@ void oracle_reach(const oracle *o, long polygon, const double point[3], size_t l
     }
 }
 
-oracle_sample oracle_look(const oracle *o, double x, double y)
+static void ray_through(const oracle *o, double x, double y, double origin[3], double direction[3])
 {
-    oracle_sample s;
-    double origin[3], direction[3], aspect = (double)o->image.width / o->image.height;
+    double aspect = (double)o->image.width / o->image.height;
     int flat = o->camera.type == GNO_CAMERA_ORTHOGRAPHIC;
     double half = flat ? o->camera.height / 2 : tan(o->camera.fov * PI / 360);
     double sx = (2 * x / o->image.width - 1) * half * aspect, sy = (1 - 2 * y / o->image.height) * half;
@@ -535,97 +534,53 @@ oracle_sample oracle_look(const oracle *o, double x, double y)
         origin[k] = o->camera.eye[k] + (flat ? off : 0);
         direction[k] = o->f[k] + (flat ? 0 : off);
     }
+}
+
+/* Counts the ray for the surface, or, once all are counted, moves `lit` to the middle of where it was seen. */
+static void use_surface(const oracle *o, const face *a, double x, double y, oracle_surfaces *surfaces, double lit[3])
+{
+    int i = 0;
+    while (i < surfaces->count && surfaces->each[i].polygon != (long)a->polygon) i++;
+    if (i == ORACLE_SURFACES) return;
+    oracle_surface *s = &surfaces->each[i];
+    if (!surfaces->counted) {
+        if (i == surfaces->count) memset(&surfaces->each[surfaces->count++], 0, sizeof *s);
+        s->polygon = (long)a->polygon;
+        s->rays++;
+        s->x += x;
+        s->y += y;
+    } else if (i < surfaces->count) {
+        double origin[3], direction[3];
+        ray_through(o, s->x / s->rays, s->y / s->rays, origin, direction);
+        double t = -(dot(a->n, origin) + a->d) / dot(a->n, direction);
+        for (int k = 0; k < 3; k++) lit[k] = origin[k] + t * direction[k];
+    }
+}
+
+oracle_sample oracle_look_again(const oracle *o, double x, double y, oracle_surfaces *surfaces)
+{
+    oracle_sample s;
+    double origin[3], direction[3];
+    ray_through(o, x, y, origin, direction);
     memset(&s, 0, sizeof s);
     const face *seen[LAYERS];
     double through[3] = {1, 1, 1};
     for (int i = 0; i < LAYERS && (through[0] > 0 || through[1] > 0 || through[2] > 0); i++) {
-        double point[3];
+        double point[3], lit[3];
         const face *a = seen[i] = visible(o, origin, direction, seen, i, point);
         if (i == 0) s.polygon = a ? (long)a->polygon : -1;
         if (i == 0 && a) memcpy(s.point, point, sizeof s.point);
         s.state = mix(s.state, a ? (unsigned long)a->polygon : 0xffffUL);
         for (int k = 0; k < 3; k++) s.rgb[k] += through[k] * (a ? o->ambient[k] * a->m.ambient[k] : o->image.background[k]);
         if (!a) break;
-        light_point(o, a, point, direction, through, &s);
+        memcpy(lit, point, sizeof lit);
+        if (surfaces) use_surface(o, a, x, y, surfaces, lit);
+        light_point(o, a, point, lit, direction, through, &s);
         for (int k = 0; k < 3; k++) through[k] *= a->m.transmission[k];
     }
     return s;
 }
 
-/* ---- pixels ------------------------------------------------------------------------------------------------------ */
+oracle_sample oracle_look(const oracle *o, double x, double y) { return oracle_look_again(o, x, y, NULL); }
 
-/* A number in [0,1) from a counter and a seed. */
-static double scatter(unsigned a, unsigned b)
-{
-    unsigned x = a * 2654435761u ^ (b + 0x9e3779b9u) * 2246822519u;
-    x = (x ^ x >> 16) * 0x7feb352du;
-    x = (x ^ x >> 15) * 0x846ca68bu;
-    return (x ^ x >> 16) / 4294967296.0;
-}
-
-/* The rays of a pixel that see one face in one state. */
-typedef struct share_of_pixel {
-    long polygon;
-    unsigned long state;
-    int count;
-    double x, y, rgb[3]; /* sums */
-} share_of_pixel;
-
-#define SHARES 24 /* of one pixel; rays beyond go to the last */
-
-static void count_ray(share_of_pixel *shares, int *count, const oracle_sample *s, double x, double y)
-{
-    int i = 0;
-    while (i < *count && (shares[i].polygon != s->polygon || shares[i].state != s->state)) i++;
-    if (i == SHARES) i--;
-    if (i == *count) {
-        memset(&shares[i], 0, sizeof shares[i]);
-        shares[i].polygon = s->polygon;
-        shares[i].state = s->state;
-        ++*count;
-    }
-    shares[i].count++;
-    shares[i].x += x;
-    shares[i].y += y;
-    for (int k = 0; k < 3; k++) shares[i].rgb[k] += s->rgb[k];
-}
-
-static void add_centred(const oracle *o, const share_of_pixel *share, double rays, double rgb[3])
-{
-    oracle_sample middle = oracle_look(o, share->x / share->count, share->y / share->count);
-    int same = middle.polygon == share->polygon && middle.state == share->state; /* a crescent's middle lies outside it */
-    for (int k = 0; k < 3; k++) rgb[k] += (same ? share->count * middle.rgb[k] : share->rgb[k]) / rays;
-}
-
-oracle_pixel oracle_look_pixel(const oracle *o, int px, int py, int n, unsigned seed)
-{
-    oracle_pixel r;
-    share_of_pixel shares[SHARES];
-    int count = 0;
-    unsigned place = (unsigned)py * (unsigned)o->image.width + (unsigned)px;
-    memset(&r, 0, sizeof r);
-    for (int j = 0; j < n; j++)
-        for (int i = 0; i < n; i++) {
-            unsigned number = 2 * (place * (unsigned)(n * n) + (unsigned)(j * n + i));
-            double x = px + (i + scatter(number, seed)) / n, y = py + (j + scatter(number + 1, seed)) / n;
-            oracle_sample s = oracle_look(o, x, y);
-            int first = i == 0 && j == 0;
-            count_ray(shares, &count, &s, x, y);
-            for (int k = 0; k < 3; k++) {
-                r.rgb[k] += s.rgb[k] / (n * n);
-                r.lower[k] = first ? s.rgb[k] : fmin(r.lower[k], s.rgb[k]);
-                r.upper[k] = first ? s.rgb[k] : fmax(r.upper[k], s.rgb[k]);
-            }
-        }
-    for (int i = 0; i < count; i++) add_centred(o, &shares[i], n * n, r.centred);
-    r.polygon = shares[0].polygon;
-    r.state = shares[0].state;
-    r.uniform = count == 1;
-    return r;
-}
-
-void oracle_picture(const oracle *o, int n, unsigned seed, oracle_pixel *pixels)
-{
-    for (int y = 0; y < o->image.height; y++)
-        for (int x = 0; x < o->image.width; x++) *pixels++ = oracle_look_pixel(o, x, y, n, seed);
-}
+gno_image_def oracle_image(const oracle *o) { return o->image; }

@@ -39,8 +39,32 @@ void oracle_destroy(oracle *o);
 /* Looks through the picture point (x,y), in pixels from the top left corner. */
 oracle_sample oracle_look(const oracle *o, double x, double y);
 
+#define ORACLE_SURFACES 24 /* of one pixel; others are lit where they are hit */
+
+/* Where a polygon is seen in a pixel, in front or through others: sums over the rays. */
+typedef struct oracle_surface {
+    long polygon;
+    int rays;
+    double x, y;
+} oracle_surface;
+
+typedef struct oracle_surfaces {
+    int count, counted;
+    oracle_surface each[ORACLE_SURFACES];
+} oracle_surfaces;
+
+/* The same look. While `counted` is 0 the surfaces along the ray are counted; then each is lit in the middle of where it was seen, wherever
+ * that lies on its plane, though what arrives there is still what arrives at the ray's end. NULL: each where it is hit. */
+oracle_sample oracle_look_again(const oracle *o, double x, double y, oracle_surfaces *surfaces);
+
+gno_image_def oracle_image(const oracle *o);
+
 /* The pixel (px,py) by n x n samples, one at a random place of each cell of a grid; the same seed gives the same places. */
 oracle_pixel oracle_look_pixel(const oracle *o, int px, int py, int n, unsigned seed);
+
+/* The pixel's mean when each surface has the brightness of the middle of where it is seen in the pixel, in whatever state, even if something
+ * else is seen there. */
+void oracle_light_once(const oracle *o, int px, int py, int n, unsigned seed, double rgb[3]);
 
 /* All pixels, row by row; pixels has width x height elements. */
 void oracle_picture(const oracle *o, int n, unsigned seed, oracle_pixel *pixels);
