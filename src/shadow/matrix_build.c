@@ -1,12 +1,16 @@
 /* matrix_build.c -- all columns of a light's shadow matrix.
  *
- *   pieces of GNOI_PIECE packets, any thread -> findings of each piece -> columns counted by scene polygon -> offsets -> casters moved to
- *   their places -> columns with several parts sorted again and closed up
+ *   pieces of GNOI_PIECE packets, any thread -> findings of each piece -> columns counted by scene polygon, each thread a run of these
+ *   -> offsets -> casters moved to their places, likewise -> columns with several parts sorted again and closed up
  */
+#include "base/fetch.h"
 #include "base/parallel.h"
 #include "shadow/matrix.h"
 
 #include <string.h>
+
+/* Beside a shade while columns are put together: the polygon has several. */
+#define SEVERAL 0x80u
 
 typedef struct job {
     const gnoi_search *search;
@@ -15,7 +19,6 @@ typedef struct job {
     gnoi_findings *pieces;
     size_t worker_count;
     gnoi_search_scratch *scratch; /* one for each worker */
-    int shared; /* some scene polygon has several columns */
 } job;
 
 /* ---- finding ------------------------------------------------------------------------------------------------------ */
@@ -61,47 +64,87 @@ static gno_status find_piece(void *user, int worker, size_t piece)
 
 /* ---- putting together ----------------------------------------------------------------------------------------------- */
 
-/* matrix->start[s + 1]: ones of scene polygon s so far; its shade. */
-static void count_columns(job *j)
+/* Columns lie by place in space, the matrix by the scene's numbers: each thread goes through all columns for a run of those. */
+typedef struct source_run {
+    uint32_t first, end;
+} source_run;
+
+static source_run run_of(const job *j, size_t run)
+{
+    const size_t size = (j->matrix->size + j->worker_count - 1) / j->worker_count, first = run * size;
+    source_run r = {(uint32_t)first, (uint32_t)(first + size)};
+    return r;
+}
+
+static int is_in(const source_run *run, uint32_t source) { return source >= run->first && source < run->end; }
+
+#define AHEAD 16 /* columns */
+
+static void fetch_ahead(const job *j, const gnoi_findings *f, size_t k)
+{
+    if (k + AHEAD < f->column_count) {
+        FETCH(&j->matrix->start[f->columns[k + AHEAD].source + 1]);
+        FETCH(&j->matrix->shade[f->columns[k + AHEAD].source]);
+    }
+}
+
+static void count_column(const job *j, const gnoi_found_column *c)
 {
     gno_matrix *m = j->matrix;
-    for (size_t i = 0; i < j->piece_count; i++)
-        for (size_t k = 0; k < j->pieces[i].column_count; k++) {
-            const gnoi_found_column *c = &j->pieces[i].columns[k];
-            uint32_t s = c->source;
-            if (m->shade[s] == GNO_SHADE_NO_AREA) {
-                m->shade[s] = (unsigned char)c->shade;
-            } else {
-                /* Parts of a polygon that is not planar are other prepared polygons; each then stands for a part only. */
-                int same = !j->search->from.scene->prepared.problems.non_planar;
-                m->shade[s] = (unsigned char)gnoi_shade_join((gno_shade)m->shade[s], c->shade, same);
-                j->shared = 1;
-            }
-            m->start[s + 1] += c->count;
+    unsigned char *shade = &m->shade[c->source];
+    /* Parts of a polygon that is not planar are other prepared polygons; each then stands for a part only. */
+    const int same = !j->search->from.scene->prepared.problems.non_planar;
+    if (*shade == GNO_SHADE_NO_AREA)
+        *shade = (unsigned char)c->shade;
+    else
+        *shade = (unsigned char)(SEVERAL | (unsigned)gnoi_shade_join((gno_shade)(*shade & ~SEVERAL), c->shade, same));
+    m->start[c->source + 1] += c->count;
+}
+
+/* matrix->start[s + 1]: ones of scene polygon s; its shade. */
+static gno_status count_run(void *user, int worker, size_t number)
+{
+    const job *j = user;
+    const source_run run = run_of(j, number);
+    (void)worker;
+    for (size_t i = 0; i < j->piece_count; i++) {
+        const gnoi_findings *f = &j->pieces[i];
+        for (size_t k = 0; k < f->column_count; k++) {
+            fetch_ahead(j, f, k);
+            if (is_in(&run, f->columns[k].source))
+                count_column(j, &f->columns[k]);
         }
-    for (size_t s = 0; s < m->size; s++)
-        m->start[s + 1] += m->start[s];
+        if (gnoi_stopped(j->matrix->context))
+            return GNO_ERROR_CANCELLED;
+    }
+    return GNO_OK;
 }
 
 /* After this start[s] is where column s ends. */
-static int move_casters(job *j)
+static gno_status move_run(void *user, int worker, size_t number)
 {
+    const job *j = user;
+    const source_run run = run_of(j, number);
     gno_matrix *m = j->matrix;
+    (void)worker;
     for (size_t i = 0; i < j->piece_count; i++) {
-        gnoi_findings *f = &j->pieces[i];
+        const gnoi_findings *f = &j->pieces[i];
         const uint32_t *from = f->casters;
         for (size_t k = 0; k < f->column_count; k++) {
-            size_t *at = &m->start[f->columns[k].source], count = f->columns[k].count;
-            for (size_t n = 0; n < count; n++)
-                m->casters[*at + n] = from[n];
-            from += count;
-            *at += count;
+            const gnoi_found_column *c = &f->columns[k];
+            fetch_ahead(j, f, k);
+            if (is_in(&run, c->source)) {
+                size_t at = m->start[c->source];
+                m->start[c->source] += c->count;
+                for (size_t n = 0; n < c->count; n++)
+                    m->casters[at + n] = from[n];
+            }
+            from += c->count;
         }
-        gnoi_findings_free(f);
         if (gnoi_stopped(m->context))
-            return 0;
+            return GNO_ERROR_CANCELLED;
     }
-    return 1;
+    return GNO_OK;
 }
 
 static void restore_starts(gno_matrix *m)
@@ -111,16 +154,25 @@ static void restore_starts(gno_matrix *m)
     m->start[0] = 0;
 }
 
+static int is_in_parts(const gno_matrix *m, size_t s) { return m->shade[s] != GNO_SHADE_NO_AREA && (m->shade[s] & SEVERAL); }
+
 /* Sorts columns that came in several parts, and closes the gaps that repeats leave. */
 static int close_up(gno_matrix *m)
 {
-    size_t to = 0, from = 0;
-    for (size_t s = 0; s < m->size; s++) {
-        size_t count = m->start[s + 1] - from, left = gnoi_sort_casters(m->context, m->casters + from, count);
-        memmove(m->casters + to, m->casters + from, left * sizeof *m->casters);
+    size_t s = 0, from, to;
+    while (s < m->size && !is_in_parts(m, s))
+        s++;
+    for (from = to = m->start[s]; s < m->size; s++) {
+        size_t count = m->start[s + 1] - from;
+        if (is_in_parts(m, s)) {
+            m->shade[s] &= (unsigned char)~SEVERAL;
+            count = gnoi_sort_casters(m->context, m->casters + from, count);
+        }
+        if (to != from)
+            memmove(m->casters + to, m->casters + from, count * sizeof *m->casters);
         from = m->start[s + 1];
         m->start[s] = to;
-        to += left;
+        to += count;
         if (gnoi_stopped_at(m->context, s))
             return 0;
     }
@@ -131,20 +183,28 @@ static int close_up(gno_matrix *m)
 static gno_status assemble(job *j)
 {
     gno_matrix *m = j->matrix;
+    gno_status status;
     m->start = gnoi_calloc(m->context, m->size + 1, sizeof *m->start);
     m->shade = gnoi_malloc(m->context, m->size, sizeof *m->shade);
     if (!m->start || !m->shade)
         return GNO_ERROR_MEMORY;
     memset(m->shade, GNO_SHADE_NO_AREA, m->size);
-    count_columns(j);
+    status = gnoi_parallel(m->context, (int)j->worker_count, j->worker_count, "shadow matrix", count_run, j);
+    if (status)
+        return status;
+    for (size_t s = 0; s < m->size; s++)
+        m->start[s + 1] += m->start[s];
     m->caster_capacity = m->start[m->size];
     m->casters = gnoi_malloc(m->context, m->caster_capacity, sizeof *m->casters);
     if (!m->casters)
         return GNO_ERROR_MEMORY;
-    if (!move_casters(j))
-        return GNO_ERROR_MEMORY;
+    status = gnoi_parallel(m->context, (int)j->worker_count, j->worker_count, "shadow matrix", move_run, j);
+    if (status)
+        return status;
+    for (size_t i = 0; i < j->piece_count; i++)
+        gnoi_findings_free(&j->pieces[i]);
     restore_starts(m);
-    return !j->shared || close_up(m) ? GNO_OK : GNO_ERROR_MEMORY;
+    return close_up(m) ? GNO_OK : GNO_ERROR_MEMORY;
 }
 
 /* ---- building ----------------------------------------------------------------------------------------------------- */

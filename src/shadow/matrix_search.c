@@ -357,6 +357,30 @@ VECTOR_CLONES static void rank_column(const uint32_t *casters, size_t count, uin
     }
 }
 
+/* Numbers so close that a bit for each takes no more room than they do: sets the bits, and lists them without repeats. Returns how many, 0
+ * when they are too far apart or there is no memory. */
+static size_t sort_close_column(gno_context *context, uint32_t *casters, size_t count)
+{
+    uint32_t low = casters[0], high = casters[0];
+    size_t words, n = 0;
+    uint32_t *bits;
+    for (size_t i = 1; i < count; i++) {
+        low = casters[i] < low ? casters[i] : low;
+        high = casters[i] > high ? casters[i] : high;
+    }
+    words = (size_t)(high - low) / 32 + 1;
+    bits = words <= count ? gnoi_calloc(context, words, sizeof *bits) : NULL;
+    if (!bits)
+        return 0;
+    for (size_t i = 0; i < count; i++)
+        bits[(casters[i] - low) / 32] |= 1u << (casters[i] - low) % 32;
+    for (size_t w = 0; w < words; w++)
+        for (uint32_t left = bits[w]; left; left &= left - 1)
+            casters[n++] = low + (uint32_t)w * 32 + gnoi_lowest_bit(left);
+    gnoi_free(context, bits, words, sizeof *bits);
+    return n;
+}
+
 /* By digits; returns 0 when there is no memory for it. */
 static int sort_long_column(gno_context *context, uint32_t *casters, size_t count)
 {
@@ -393,6 +417,11 @@ size_t gnoi_sort_casters(gno_context *context, uint32_t *casters, size_t count)
     size_t n = 0;
     if (count <= 1)
         return count;
+    if (count >= LONG_COLUMN) {
+        n = sort_close_column(context, casters, count);
+        if (n > 0)
+            return n;
+    }
     if (count <= SHORT_COLUMN) {
         rank_column(casters, count, ranked);
         from = ranked;
