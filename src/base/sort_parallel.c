@@ -7,7 +7,7 @@
 #include <string.h>
 
 #define PIECE 65536 /* pairs: below two pieces the sort of one thread serves */
-#define DIGIT_BITS 10
+#define DIGIT_BITS 11
 #define DIGITS (1u << DIGIT_BITS)
 
 typedef struct sorting {

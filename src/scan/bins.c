@@ -1,5 +1,6 @@
 /* bins.c -- see bins.h. Two passes over the polygons in fixed chunks: count by tile, then fill. */
 #include "scan/bins.h"
+#include "base/pages.h"
 #include "base/parallel.h"
 #include "scan/ranges.h"
 #include <string.h>
@@ -34,6 +35,7 @@ static gno_status project_chunk(void *user, int worker, size_t piece)
     const gnoi_view *view = j->view;
     size_t end = (piece + 1) * VERTEX_CHUNK < j->bins->vertex_count ? (piece + 1) * VERTEX_CHUNK : j->bins->vertex_count;
     (void)worker;
+    gnoi_pages_ready(j->bins->vertices + piece * VERTEX_CHUNK, (end - piece * VERTEX_CHUNK) * sizeof *j->bins->vertices);
     for (size_t i = piece * VERTEX_CHUNK; i < end; i++) {
         vec3 p = v3_from(j->scene->prepared.positions[i]);
         gnoi_vertex *v = &j->bins->vertices[i];
@@ -126,6 +128,7 @@ static gno_status count_chunk(void *user, int worker, size_t piece)
     const size_t polys = j->scene->prepared.poly_count, width = (size_t)j->bins->tiles_x;
     size_t end = (piece + 1) * CHUNK < polys ? (piece + 1) * CHUNK : polys;
     uint32_t *counts = j->counts + piece * j->tile_count;
+    gnoi_pages_ready(j->ranges + piece * CHUNK, (end - piece * CHUNK) * sizeof *j->ranges);
     for (size_t i = piece * CHUNK; i < end; i += GNOI_LANES) {
         const unsigned count = end - i < GNOI_LANES ? (unsigned)(end - i) : GNOI_LANES;
         gnoi_tile_range range[GNOI_LANES];

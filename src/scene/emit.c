@@ -6,6 +6,7 @@
  * Invariants: every prepared ring has three corners or more; a polygon's rings and corners follow those of the one before.
  */
 #include "base/fetch.h"
+#include "base/pages.h"
 #include "base/parallel.h"
 #include "scene/prepare.h"
 
@@ -319,6 +320,7 @@ static gno_status polygon_chunk(void *user, int worker, size_t chunk)
     int closes = 1, opaque = 1;
     gno_status status = GNO_OK;
     (void)worker;
+    gnoi_pages_ready(out->polys + chunk * GNOI_CHUNK, (end - chunk * GNOI_CHUNK) * sizeof *out->polys);
     for (size_t i = chunk * GNOI_CHUNK; i < end && !status; i++) {
         status = emit_polygon(w, i, &at);
         opaque &= out->polys[i].opaque;

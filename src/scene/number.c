@@ -7,6 +7,7 @@
  * Numbering goes corner by corner; that of vertices and that of normals are independent and run side by side.
  */
 #include "base/fetch.h"
+#include "base/pages.h"
 #include "base/parallel.h"
 #include "scene/prepare.h"
 
@@ -92,6 +93,7 @@ static gno_status copy_piece(void *user, int worker, size_t piece)
     const gnoi_preparing *w = n->w;
     size_t end = (piece + 1) * PIECE < w->out->vertex_count ? (piece + 1) * PIECE : w->out->vertex_count;
     (void)worker;
+    gnoi_pages_ready(w->out->positions + piece * PIECE, (end - piece * PIECE) * sizeof *w->out->positions);
     for (size_t v = piece * PIECE; v < end; v++) {
         if (v + AHEAD < end)
             FETCH(w->scene->positions[n->vertex_source[v + AHEAD]]);

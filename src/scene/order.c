@@ -7,23 +7,33 @@
  */
 #include "base/parallel.h"
 #include "base/sort_parallel.h"
+#include "base/vector.h"
 #include "scene/prepare.h"
 
 #include <string.h>
 
-#define MORTON_BITS 10
+#define MORTON_BITS 7
+#define CELLS (1 << MORTON_BITS)
+#define SAMPLES 4096      /* vertices, about, by which the size of the cells is found */
+#define SPREAD 3          /* standard deviations that they cover */
 #define FEW_POLYGONS 1024 /* below, everything fits the cache as it is */
 #define PIECE 16384       /* vertices or polygons */
 
 typedef struct ordering {
     gnoi_preparing *w;
-    double extent;     /* the longest side of the scene's bounds */
+    double lower[3], scale; /* of the cells */
     uint32_t *place;   /* Morton number of each scene vertex; NULL: all items are equal */
     size_t *first;     /* of each piece of polygons: where its items begin */
     gnoi_keyed *items, *sorted;
 } ordering;
 
-static uint32_t spread(uint32_t x)
+static inline uint32_t cell(double t)
+{
+    t = t > 0 ? t : 0;
+    return (uint32_t)(int32_t)(t < CELLS - 1 ? t : CELLS - 1);
+}
+
+static inline uint32_t spread(uint32_t x)
 {
     x = (x | x << 16) & 0x030000ffu;
     x = (x | x << 8) & 0x0300f00fu;
@@ -31,18 +41,13 @@ static uint32_t spread(uint32_t x)
     return (x | x << 2) & 0x09249249u;
 }
 
-/* Cells are cubes of the longest extent: a flat scene cut as finely in height would come in layers. Vertices that no item uses may lie
- * outside the bounds. */
-static uint32_t place_of(const gnoi_prepared *prep, double extent, const double p[3])
+/* Cells are cubes: a flat scene cut as finely in height would come in layers. */
+VECTOR_CLONES static void set_places(const ordering *o, const double (*restrict positions)[3], size_t count, uint32_t *restrict place)
 {
-    uint32_t key = 0;
-    for (int k = 0; k < 3; k++) {
-        double t = extent > 0 ? (p[k] - prep->lower[k]) / extent : 0;
-        t = t > 0 ? t : 0;
-        t = t < 1 ? t : 1;
-        key |= spread((uint32_t)(t * ((1 << MORTON_BITS) - 1))) << k;
-    }
-    return key;
+    const double scale = o->scale, x = o->lower[0], y = o->lower[1], z = o->lower[2];
+    for (size_t v = 0; v < count; v++)
+        place[v] = spread(cell(scale * (positions[v][0] - x))) | spread(cell(scale * (positions[v][1] - y))) << 1 |
+                   spread(cell(scale * (positions[v][2] - z))) << 2;
 }
 
 static gno_status place_piece(void *user, int worker, size_t piece)
@@ -51,8 +56,7 @@ static gno_status place_piece(void *user, int worker, size_t piece)
     const gno_scene *scene = o->w->scene;
     size_t end = (piece + 1) * PIECE < scene->vertex_count ? (piece + 1) * PIECE : scene->vertex_count;
     (void)worker;
-    for (size_t v = piece * PIECE; v < end; v++)
-        o->place[v] = place_of(o->w->out, o->extent, scene->positions[v]);
+    set_places(o, (const double(*)[3])scene->positions + piece * PIECE, end - piece * PIECE, o->place + piece * PIECE);
     return GNO_OK;
 }
 
@@ -120,13 +124,36 @@ static size_t count_items(const ordering *o, size_t pieces)
 
 /* ---- the whole ------------------------------------------------------------------------------------------------------ */
 
+/* The cells cover most of the vertices: what lies farther out, as the corners of a wide ground under a small model, counts to those
+ * at the border. */
+static void set_cells(ordering *o)
+{
+    const gno_scene *scene = o->w->scene;
+    const gnoi_prepared *prep = o->w->out;
+    const size_t step = 1 + scene->vertex_count / SAMPLES, count = (scene->vertex_count + step - 1) / step;
+    double extent = 0;
+    for (int k = 0; k < 3; k++) {
+        const double middle = 0.5 * (prep->lower[k] + prep->upper[k]);
+        double sum = 0, squares = 0, mean, reach, upper;
+        for (size_t v = 0; v < scene->vertex_count; v += step) {
+            double x = scene->positions[v][k] - middle;
+            sum += x;
+            squares += x * x;
+        }
+        mean = sum / (double)count;
+        reach = SPREAD * sqrt(fmax(squares / (double)count - mean * mean, 0));
+        o->lower[k] = fmax(prep->lower[k], middle + mean - reach);
+        upper = fmin(prep->upper[k], middle + mean + reach);
+        extent = upper - o->lower[k] > extent ? upper - o->lower[k] : extent;
+    }
+    o->scale = extent > 0 ? CELLS / extent : 0;
+}
+
 static gno_status fill_places(ordering *o)
 {
     gno_context *context = o->w->scene->context;
-    const gnoi_prepared *prep = o->w->out;
     size_t vertices = o->w->scene->vertex_count;
-    for (int k = 0; k < 3; k++)
-        o->extent = prep->upper[k] - prep->lower[k] > o->extent ? prep->upper[k] - prep->lower[k] : o->extent;
+    set_cells(o);
     o->place = gnoi_malloc(context, vertices, sizeof *o->place);
     if (!o->place)
         return GNO_ERROR_MEMORY;
@@ -162,7 +189,7 @@ gno_status gnoi_order_items(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
     size_t pieces = (w->scene->polygon_count + PIECE - 1) / PIECE;
-    ordering o = {w, 0, NULL, NULL, NULL, NULL};
+    ordering o = {w, {0, 0, 0}, 0, NULL, NULL, NULL, NULL};
     gno_status status = GNO_OK;
     o.first = gnoi_malloc(context, pieces, sizeof *o.first);
     w->item_count = o.first ? count_items(&o, pieces) : 0;

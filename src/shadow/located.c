@@ -1,5 +1,6 @@
 /* located.c -- see located.h. */
 #include "shadow/located.h"
+#include "base/pages.h"
 #include "base/vector.h"
 
 VECTOR_CLONES
@@ -33,6 +34,8 @@ gnoi_located *gnoi_locate_vertices(const gno_scene *scene, const gnoi_frame *fra
 {
     const gnoi_prepared *prep = &scene->prepared;
     gnoi_located *located = gnoi_malloc(scene->context, prep->vertex_count, sizeof *located);
+    if (located)
+        gnoi_pages_ready(located, prep->vertex_count * sizeof *located);
     if (located && frame->faces == 1)
         locate_on_plane(frame, (const double(*)[3])prep->positions, prep->vertex_count, located);
     else if (located)

@@ -1,6 +1,7 @@
 /* tree.c -- see tree.h. */
 #include "shadow/tree.h"
 #include "base/fetch.h"
+#include "base/pages.h"
 #include <string.h>
 
 #define AHEAD 16 /* boxes */
@@ -174,6 +175,7 @@ static void clear_ends(gnoi_tree *tree)
 /* 0 when stopped. */
 static int fill(gno_context *context, const gno_scene *scene, gnoi_tree *tree, const gnoi_boxes *b, const uint32_t *order)
 {
+    gnoi_pages_ready(tree->nodes, tree->node_count * sizeof *tree->nodes);
     clear_ends(tree);
     for (size_t i = 0; i < tree->entry_count; i++) {
         if (i + AHEAD < tree->entry_count)

@@ -217,14 +217,37 @@ static void check_polygon(const gno_scene *s, const gnoi_poly *poly)
     assert_int_equal(ring, poly->ring + poly->ring_count);
 }
 
-static unsigned twin_place(const gnoi_prepared *q, vec3 p)
+/* The cells lie within three standard deviations of a sample of the vertices, and within the scene's bounds; 128 along the longest side. */
+typedef struct cells {
+    double lower[3], extent;
+} cells;
+
+static cells twin_cells(const gno_scene *s)
+{
+    const gnoi_prepared *q = &s->prepared;
+    const size_t step = s->vertex_count / 4096 + 1;
+    cells c = {{0, 0, 0}, 0};
+    for (int k = 0; k < 3; k++) {
+        double middle = (q->lower[k] + q->upper[k]) / 2, sum = 0, squares = 0, count = 0, reach;
+        for (size_t v = 0; v < s->vertex_count; v += step) {
+            sum += s->positions[v][k] - middle;
+            squares += (s->positions[v][k] - middle) * (s->positions[v][k] - middle);
+            count++;
+        }
+        reach = 3 * sqrt(fmax(squares / count - sum / count * (sum / count), 0));
+        c.lower[k] = fmax(q->lower[k], middle + sum / count - reach);
+        c.extent = fmax(c.extent, fmin(q->upper[k], middle + sum / count + reach) - c.lower[k]);
+    }
+    return c;
+}
+
+static unsigned twin_place(const cells *c, vec3 p)
 {
     const double x[3] = {p.x, p.y, p.z};
-    double extent = fmax(q->upper[0] - q->lower[0], fmax(q->upper[1] - q->lower[1], q->upper[2] - q->lower[2]));
     unsigned key = 0;
-    for (int bit = 9; bit >= 0; bit--)
+    for (int bit = 6; bit >= 0; bit--)
         for (int k = 2; k >= 0; k--)
-            key = 2 * key + ((unsigned)((x[k] - q->lower[k]) / extent * 1023) >> bit & 1u);
+            key = 2 * key + ((unsigned)fmin(fmax(128 / c->extent * (x[k] - c->lower[k]), 0), 127) >> bit & 1u);
     return key;
 }
 
@@ -232,12 +255,13 @@ static unsigned twin_place(const gnoi_prepared *q, vec3 p)
 static void check_order(const gno_scene *s)
 {
     const gnoi_prepared *q = &s->prepared;
+    const cells c = twin_cells(s);
     unsigned char *seen = calloc(s->polygon_count + 1, 1);
     assert_non_null(seen);
     for (size_t i = 0; i < q->poly_count; i++) {
         seen[q->polys[i].source] = 1;
         if (i > 0 && q->poly_count >= 1024) {
-            unsigned before = twin_place(q, at(q, q->polys[i - 1].corner)), own = twin_place(q, at(q, q->polys[i].corner));
+            unsigned before = twin_place(&c, at(q, q->polys[i - 1].corner)), own = twin_place(&c, at(q, q->polys[i].corner));
             assert_true(before < own || (before == own && q->polys[i - 1].source <= q->polys[i].source));
         } else if (i > 0) {
             assert_true(q->polys[i - 1].source <= q->polys[i].source);
