@@ -38,6 +38,9 @@ void gnoi_tile_free(gnoi_tile *tile)
     gnoi_free(context, tile->order_scratch, tile->order_scratch_capacity, sizeof *tile->order_scratch);
     gnoi_free(context, tile->items, tile->item_capacity, sizeof *tile->items);
     gnoi_free(context, tile->slots, tile->slot_capacity, sizeof *tile->slots);
+    gnoi_free(context, tile->briefs, tile->brief_capacity, sizeof *tile->briefs);
+    gnoi_free(context, tile->facets, tile->facet_capacity, sizeof *tile->facets);
+    gnoi_free(context, tile->arrives, tile->arrive_capacity, sizeof *tile->arrives);
     gnoi_free(context, tile->edges, tile->edge_capacity, sizeof *tile->edges);
     gnoi_free(context, tile->line_y, tile->line_y_capacity, sizeof *tile->line_y);
     gnoi_free(context, tile->bar, tile->bar_capacity, sizeof *tile->bar);
@@ -67,6 +70,8 @@ void gnoi_tile_start(gnoi_tile *tile, size_t index)
     tile->slot_count = tile->column_count = tile->intensity_count = tile->mapping_count = 0;
     gnoi_tile_forget_texels(tile);
     gnoi_columns_reset(&tile->store);
+    tile->specks.first = 1;
+    tile->specks.count = 0;
     memset(tile->acc, 0, sizeof tile->acc);
     memset(tile->weight, 0, sizeof tile->weight);
     for (int i = 0; i < job->def.base_lines && i < GNOI_BASE_LINES; i++)

@@ -5,7 +5,7 @@
  *        -> tile_stack.c: surfaces that let light through, over and between them (scan/stack.h)
  *        -> tile_light.c: a column of each lamp's shadow matrix for every surface seen
  *        -> tile_rows.c: visible pieces of a pixel row -> coverage by surface and pixel, split by shadow polygons
- *        -> tile_shade.c, tile_run.c: one sample for each pixel and surface -> lighting -> the tile's picture
+ *        -> tile_shade.c, tile_run.c, tile_speck.c: one sample for each pixel and surface -> lighting -> the tile's picture
  *        -> tile_layers.c: what covers how much of each pixel -> layers beside the picture, where they are asked for
  *        -> tile.c: which pixels vary and get more lines; the tile's part of the picture
  * Invariants: a tile depends on nothing but the frame, so that any thread may make it; each line adds a coverage of exactly
@@ -15,6 +15,7 @@
 #define GNOI_ENGINE_TILE_H
 
 #include "base/sort.h"
+#include "engine/specks.h"
 #include "scan/lanes.h"
 #include "scan/stack.h"
 #include "shade/batch.h"
@@ -87,7 +88,6 @@ typedef struct gnoi_texel {
 typedef struct gnoi_slot {
     gnoi_receiver receiver;
     uint32_t first_column; /* lamp_count columns in tile.columns, GNOI_NONE until lit */
-    uint32_t chain;        /* first visible piece in the row at hand, 0: none */
     gnoi_interp interp;
     uint32_t first_intensity; /* constant, gouraud: intensities in tile.intensities, GNOI_NONE until needed */
     uint32_t intensity_triangle; /* gouraud: of the interpolation, whose corners they are */
@@ -97,6 +97,13 @@ typedef struct gnoi_slot {
 /* Cells taken at once by vector code, which may read so many from any cell on. */
 #define GNOI_CELLS_STEP 8
 #define GNOI_CELLS (GNOI_TILE_W + GNOI_CELLS_STEP)
+
+/* What the shading of a small surface asks for. */
+typedef struct gnoi_facet {
+    double plane[4][3]; /* nearness, then x, y, z of the normal, any length: fx, fy, f0 of each */
+    double g[3];        /* the plane's normal on the viewer's side, unit */
+    uint32_t material;
+} gnoi_facet;
 
 /* Coverage of one surface, or of its lit part, along a pixel row: sums over pieces of length, and of length times the
  * offset of its middle from the pixel's centre. Lengths in pixels. */
@@ -165,6 +172,11 @@ typedef struct gnoi_tile {
     int lit_lamp;                          /* of the sample at hand */
     size_t slot_count, slot_capacity;
     gnoi_slot *slots;                      /* beside lines.depths, same numbering */
+    size_t brief_capacity, facet_capacity, arrive_capacity;
+    gnoi_brief *briefs;                    /* beside the slots */
+    gnoi_facet *facets;                    /* beside the slots, of those that are speckled */
+    unsigned char *arrives;                /* lamp_count beside each facet: 1 where the lamp's light does */
+    gnoi_specks specks;                    /* of the row at hand */
     gnoi_outline outline;
     size_t edge_capacity;
     gnoi_edge *edges;                      /* of the polygon at hand */
@@ -255,9 +267,9 @@ void gnoi_tile_forget_texels(gnoi_tile *tile);
 /* tile_stack.c: what a surface that is not opaque does to what lies behind it. */
 gnoi_pass gnoi_tile_pass(void *tile, uint32_t slot, int32_t x0, int32_t x1, double y);
 
-/* tile_stack.c, for tile_rows.c where the tile is veiled: what reaches the eye of a slot's pieces in the row, between two
+/* tile_stack.c, for tile_rows.c where the tile is veiled: what reaches the eye of a chain of pieces in the row, between two
  * pixels, into tile->veil; what is seen of the background; memory for the lamps' parts (0 when it fails). */
-void gnoi_tile_veil(gnoi_tile *tile, int row, const gnoi_slot *slot, int first, int last);
+void gnoi_tile_veil(gnoi_tile *tile, int row, uint32_t chain, int first, int last);
 void gnoi_tile_veiled_background(gnoi_tile *tile, int row);
 void gnoi_tile_uncover(gnoi_tile *tile, int first, int last); /* takes back the coverage by the slot at hand: it hides nothing */
 int gnoi_tile_veil_ready(gnoi_tile *tile);
@@ -297,6 +309,11 @@ void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column 
 /* tile_run.c: the samples of all pixels from `first` to `last`, each covered by the surface, as gnoi_tile_sample_pixel makes them; 0 when the
  * surface, its columns or the tile ask for more than it can do, and nothing is done. */
 int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last);
+
+/* tile_speck.c: facets of those among new slots, whose columns are known, that are small and ask for nothing else; returns 0 when memory fails.
+ * Samples of all specks of a row, which are done with then. */
+int gnoi_tile_set_facets(gnoi_tile *tile, const uint32_t *slots, size_t count);
+void gnoi_tile_sample_specks(gnoi_tile *tile, int row);
 
 /* tile_shade.c: one sample of a slot: the part of pixel `column` of `row` that `cells` hold, at its middle. The caller has
  * set batch.weight[lamp][batch.count] to the coverage (in lines) that each lamp reaches. tint NULL: the surface with its ambient

@@ -23,12 +23,13 @@ static size_t list_slots(gnoi_tile *tile)
     size_t count = 0;
     for (size_t line = 0; line < tile->lines.line_count; line++)
         for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
-            gnoi_slot *slot = &tile->slots[tile->lines.pieces[p].slot];
-            if (slot->first_column != GNOI_NONE)
+            uint32_t slot = tile->lines.pieces[p].slot;
+            if (tile->briefs[slot].lit)
                 continue;
-            slot->first_column = (uint32_t)tile->column_count;
+            tile->briefs[slot].lit = 1;
+            tile->slots[slot].first_column = (uint32_t)tile->column_count;
             tile->column_count += (size_t)tile->job->lamp_count;
-            tile->touched[count++] = tile->lines.pieces[p].slot;
+            tile->touched[count++] = slot;
         }
     return count;
 }
@@ -133,6 +134,7 @@ void gnoi_tile_light(gnoi_tile *tile)
         }
         tile->failed |= !gnoi_columns_finish(&job->view, &job->casters[j], &tile->store);
     }
+    tile->failed = tile->failed || !gnoi_tile_set_facets(tile, tile->touched, count);
     if (tile->judging && !tile->failed) {
         mark_thin_shadows(tile, first_column);
         mark_thin_sheets(tile, first_column);

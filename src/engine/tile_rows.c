@@ -117,10 +117,10 @@ int gnoi_tile_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *col
 
 /* Splits all pieces of a slot in a row under one lamp. Pieces at one height follow each other and share their intervals. soft, a
  * constant at each call: the lamp's shadows weaken with distance. */
-static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, gnoi_column *column, int lamp, int soft)
+static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, uint32_t chain, gnoi_column *column, int lamp, int soft)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
-    uint32_t p = slot->chain;
+    uint32_t p = chain;
     while (p) {
         double y = tile->lines.lines[pieces[p].line].y;
         int32_t xa = pieces[p].x0, xb = pieces[p].x1;
@@ -144,12 +144,12 @@ static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, gn
     }
 }
 
-static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, gnoi_column *column, int lamp)
+static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, uint32_t chain, gnoi_column *column, int lamp)
 {
     if (tile->job->lamps[lamp].softness > 0)
-        split_row(tile, row, slot, column, lamp, 1);
+        split_row(tile, row, slot, chain, column, lamp, 1);
     else
-        split_row(tile, row, slot, column, lamp, 0);
+        split_row(tile, row, slot, chain, column, lamp, 0);
 }
 
 static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
@@ -222,12 +222,22 @@ static void sample_pixels(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *c
             gnoi_tile_sample_pixel(tile, slot, columns, row, pixel);
 }
 
-static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
+/* What the slot at hand covers, for the background behind what is not opaque. */
+static void add_row_cover(gnoi_tile *tile, int first, int last)
+{
+    for (int pixel = first; pixel <= last; pixel++)
+        tile->row_cover[pixel] += tile->cells.length[pixel];
+    for (int i = 0; i < tile->job->def.base_lines && tile->judging; i++)
+        for (int pixel = first; pixel <= last; pixel++)
+            tile->row_by_line[i][pixel] += tile->cells.by_line[i][pixel];
+}
+
+static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot, uint32_t chain)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
     int lamps = tile->job->lamp_count, first = GNOI_TILE_W - 1, last = 0;
     const gnoi_column *columns;
-    for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
+    for (uint32_t p = chain; p; p = pieces[p].chain) {
         int a = pieces[p].x0 / GNOI_X_ONE, b = (pieces[p].x1 - 1) / GNOI_X_ONE;
         first = a < first ? a : first;
         last = b > last ? b : last;
@@ -237,93 +247,121 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot)
     for (int j = 0; j < lamps; j++)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
             clear_lamp(tile, j, first, last);
-    for (uint32_t p = slot->chain; p; p = pieces[p].chain) {
-        int line = base_line_of(tile, row, pieces[p].line);
-        cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE,
-                  line_offset(tile, row, pieces[p].line), line);
-        tile->spans++;
-    }
+    for (uint32_t p = chain; p; p = pieces[p].chain)
+        cells_add(&tile->cells, (float)pieces[p].x0 / GNOI_X_ONE, (float)pieces[p].x1 / GNOI_X_ONE, line_offset(tile, row, pieces[p].line),
+                  base_line_of(tile, row, pieces[p].line));
     if (tile->veiled)
-        gnoi_tile_veil(tile, row, slot, first, last);
+        gnoi_tile_veil(tile, row, chain, first, last);
     for (int j = 0; j < lamps && !tile->failed; j++)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
-            split_pieces(tile, row, slot, &tile->columns[slot->first_column + (uint32_t)j], j);
-    for (int pixel = first; pixel <= last; pixel++)
-        tile->row_cover[pixel] += tile->cells.length[pixel];
-    for (int i = 0; i < tile->job->def.base_lines && tile->judging; i++)
-        for (int pixel = first; pixel <= last; pixel++)
-            tile->row_by_line[i][pixel] += tile->cells.by_line[i][pixel];
+            split_pieces(tile, row, slot, chain, &tile->columns[slot->first_column + (uint32_t)j], j);
+    if (tile->veiled)
+        add_row_cover(tile, first, last);
     if (!tile->failed)
         sample_pixels(tile, slot, columns, row, first, last);
-    if (!slot->receiver.poly->opaque)
+    if (tile->veiled && !slot->receiver.poly->opaque)
         gnoi_tile_uncover(tile, first, last);
 }
 
-static size_t chain_line(gnoi_tile *tile, uint32_t line, size_t count)
+/* A piece of a small surface to the specks of its pixels. */
+static void speckle(gnoi_tile *tile, int row, const gnoi_piece *piece, float dy, int line)
 {
+    gnoi_specks *s = &tile->specks;
+    gnoi_brief *brief = &tile->briefs[piece->slot];
+    for (int32_t x = piece->x0; x < piece->x1;) {
+        int32_t left = x & ~(GNOI_X_ONE - 1), end = left + GNOI_X_ONE < piece->x1 ? left + GNOI_X_ONE : piece->x1;
+        if (s->count == GNOI_SPECKS)
+            gnoi_tile_sample_specks(tile, row);
+        gnoi_speck_add(s, gnoi_specks_seek(s, brief, piece->slot, x / GNOI_X_ONE), x - left, end - left, dy, line);
+        x = end;
+    }
+}
+
+/* The pieces of a line to specks, those of larger surfaces into chains. */
+static size_t part_line(gnoi_tile *tile, int row, uint32_t line, size_t count)
+{
+    const float dy = line_offset(tile, row, line);
+    const int base = base_line_of(tile, row, line), may_speckle = !tile->veiled && !tile->tinted && !tile->job->layers && !tile->job->textured;
     for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
         gnoi_piece *piece = &tile->lines.pieces[p];
-        gnoi_slot *slot = &tile->slots[piece->slot];
-        if (slot->chain == 0)
+        gnoi_brief *brief = &tile->briefs[piece->slot];
+        tile->spans++;
+        if (brief->speckled && may_speckle) {
+            speckle(tile, row, piece, dy, base);
+            continue;
+        }
+        if (brief->chain == 0)
             tile->touched[count++] = piece->slot;
-        piece->chain = slot->chain;
-        slot->chain = p;
+        piece->chain = brief->chain;
+        brief->chain = p;
     }
     return count;
 }
 
-/* Chains the row's pieces by slot; returns how many slots are seen. Lines at one height follow each other: they meet the same shadows. */
-static size_t chain_pieces(gnoi_tile *tile, int row)
+/* Parts the row's pieces into specks and chains by slot; returns how many chains. Lines at one height follow each other: they meet the same
+ * shadows. */
+static size_t part_pieces(gnoi_tile *tile, int row)
 {
     uint32_t first = tile->row_line[row], lines = tile->row_line[row + 1] - first;
     uint32_t strips = (uint32_t)(tile->row_strip_end[row] - tile->row_strip[row]), each = lines / strips;
     size_t count = 0;
     for (uint32_t i = 0; i < each; i++)
         for (uint32_t s = 0; s < strips; s++)
-            count = chain_line(tile, first + s * each + i, count);
+            count = part_line(tile, row, first + s * each + i, count);
     return count;
 }
 
-/* What a line leaves free of pixels, times a value. */
-VECTOR_CLONES static void add_free(float *restrict to, const float *restrict covered, int count, float value)
+/* ---- background ------------------------------------------------------------------------------------------------------- */
+
+VECTOR_CLONES static void add_times(float *restrict to, const float *restrict share, int count, float value)
 {
     for (int p = 0; p < count; p++)
-        to[p] += (1 - covered[p]) * value;
+        to[p] += share[p] * value;
 }
 
-VECTOR_CLONES static void add_positive(float *restrict to, const float *restrict share, int count, float value)
+/* How much of each pixel a line leaves free: exact, for lengths are multiples of 2^-16. */
+static void find_gaps(const gnoi_tile *tile, const gnoi_line *line, float *gaps)
 {
-    for (int p = 0; p < count; p++)
-        to[p] += share[p] > 0 ? share[p] * value : 0;
+    int32_t x = line->xa;
+    for (uint32_t p = line->first; x < line->xb; p = tile->lines.pieces[p].next) {
+        int32_t to = p ? tile->lines.pieces[p].x0 : line->xb;
+        while (x < to) {
+            int32_t end = (x | (GNOI_X_ONE - 1)) + 1 < to ? (x | (GNOI_X_ONE - 1)) + 1 : to;
+            gaps[x / GNOI_X_ONE] += (float)(end - x) / GNOI_X_ONE;
+            x = end;
+        }
+        x = p ? tile->lines.pieces[p].x1 : line->xb;
+    }
 }
 
 /* What the row's lines leave free shows the background. */
 static void add_background(gnoi_tile *tile, int row)
 {
     const double *background = tile->job->scene->image.background;
-    float due[GNOI_TILE_W] = {0}, rest[GNOI_TILE_W];
+    float rest[GNOI_TILE_W] = {0};
     const int index = row * GNOI_TILE_W;
+    int open = 0;
     if (tile->veiled) {
         gnoi_tile_veiled_background(tile, row);
         return;
     }
     for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++) {
         const gnoi_line *l = &tile->lines.lines[line];
-        const int first = l->xa / GNOI_X_ONE, count = l->xb / GNOI_X_ONE - first;
-        for (int p = first; p < first + count; p++)
-            due[p] += 1;
-        if (!tile->judging)
+        const int first = l->xa / GNOI_X_ONE, end = l->xb / GNOI_X_ONE;
+        float gaps[GNOI_TILE_W] = {0};
+        for (int p = first; p < end; p++)
+            tile->weight[index + p] += 1;
+        if (l->uncovered == 0)
             continue;
-        int i = gnoi_tile_base_line(tile, row, line);
-        for (int k = 0; k < 3; k++)
-            add_free(&tile->line_acc[i][k][index + first], &tile->row_by_line[i][first], count, (float)background[k]);
+        open = 1;
+        find_gaps(tile, l, gaps);
+        for (int p = first; p < end; p++)
+            rest[p] += gaps[p];
+        for (int k = 0; k < 3 && tile->judging; k++)
+            add_times(tile->line_acc[gnoi_tile_base_line(tile, row, line)][k] + index + first, gaps + first, end - first, (float)background[k]);
     }
-    for (int p = 0; p < tile->width; p++) {
-        rest[p] = due[p] - tile->row_cover[p];
-        tile->weight[index + p] += due[p];
-    }
-    for (int k = 0; k < 3; k++)
-        add_positive(&tile->acc[k][index], rest, tile->width, (float)background[k]);
+    for (int k = 0; k < 3 && open; k++)
+        add_times(&tile->acc[k][index], rest, tile->width, (float)background[k]);
 }
 
 void gnoi_tile_row(gnoi_tile *tile, int row)
@@ -336,15 +374,19 @@ void gnoi_tile_row(gnoi_tile *tile, int row)
         tile->failed = 1;
         return;
     }
-    count = chain_pieces(tile, row);
-    memset(tile->row_cover, 0, sizeof tile->row_cover);
-    memset(tile->row_by_line, 0, sizeof tile->row_by_line);
-    for (size_t i = 0; i < count; i++) {
-        gnoi_slot *slot = &tile->slots[tile->touched[i]];
-        if (!tile->failed)
-            row_of_slot(tile, row, slot);
-        tile->failed |= i % 64 == 63 && gnoi_stopped(tile->lines.context);
-        slot->chain = 0;
+    count = part_pieces(tile, row);
+    if (tile->veiled) {
+        memset(tile->row_cover, 0, sizeof tile->row_cover);
+        memset(tile->row_by_line, 0, sizeof tile->row_by_line);
     }
+    for (size_t i = 0; i < count; i++) {
+        gnoi_brief *brief = &tile->briefs[tile->touched[i]];
+        if (!tile->failed)
+            row_of_slot(tile, row, &tile->slots[tile->touched[i]], brief->chain);
+        tile->failed |= i % 64 == 63 && gnoi_stopped(tile->lines.context);
+        brief->chain = 0;
+    }
+    if (tile->specks.count > 0)
+        gnoi_tile_sample_specks(tile, row);
     add_background(tile, row);
 }

@@ -7,6 +7,7 @@ int gnoi_tile_reserve_slots(gnoi_tile *tile, size_t more)
 {
     gnoi_lines *lines = &tile->lines;
     return gnoi_reserve(lines->context, (void **)&tile->slots, &tile->slot_capacity, tile->slot_count + more, sizeof *tile->slots) &&
+           gnoi_reserve(lines->context, (void **)&tile->briefs, &tile->brief_capacity, tile->slot_count + more, sizeof *tile->briefs) &&
            gnoi_reserve(lines->context, (void **)&lines->depths, &lines->depth_capacity, tile->slot_count + more, sizeof *lines->depths);
 }
 
@@ -60,13 +61,14 @@ static void set_depth(const gnoi_tile *tile, const gnoi_lanes *l, unsigned lane,
 
 uint32_t gnoi_tile_new_slot(gnoi_tile *tile, const gnoi_lanes *lanes, unsigned lane, uint32_t index, int cut)
 {
+    static const gnoi_brief none;
     gnoi_slot *slot = &tile->slots[tile->slot_count];
     double side = lanes->side[lane];
     if (side == 0 || (side < 0 && !tile->job->scene->prepared.polys[index].two_sided))
         return GNOI_NONE;
     slot->first_column = slot->first_intensity = slot->mapping = GNOI_NONE;
     slot->intensity_triangle = GNOI_NONE;
-    slot->chain = 0;
+    tile->briefs[tile->slot_count] = none;
     slot->interp.ready = 0;
     set_receiver(tile, lanes, lane, index, cut, &slot->receiver);
     set_depth(tile, lanes, lane, &slot->receiver, &tile->lines.depths[tile->slot_count]);

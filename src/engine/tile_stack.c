@@ -73,11 +73,11 @@ static void veil_add(gnoi_tile *tile, gnoi_veil *veil, int row, uint32_t line, i
         gnoi_tile_add_light(veil->by_line.rgb[gnoi_tile_base_line(tile, row, line)], a, b, light);
 }
 
-void gnoi_tile_veil(gnoi_tile *tile, int row, const gnoi_slot *slot, int first, int last)
+void gnoi_tile_veil(gnoi_tile *tile, int row, uint32_t chain, int first, int last)
 {
     veil_clear(tile, &tile->veil, first, last);
     memset(tile->veil.hides + first, 0, (size_t)(last - first + 1) * sizeof(float));
-    for (uint32_t p = slot->chain; p; p = tile->lines.pieces[p].chain) {
+    for (uint32_t p = chain; p; p = tile->lines.pieces[p].chain) {
         const gnoi_piece *piece = &tile->lines.pieces[p];
         const gnoi_tint *tint = &tile->stacks.tints[p];
         double light[3] = {(double)tint->rgb[0], (double)tint->rgb[1], (double)tint->rgb[2]};
