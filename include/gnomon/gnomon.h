@@ -449,8 +449,8 @@ typedef enum gno_engine { GNO_ENGINE_SCANLINE = 0, GNO_ENGINE_WEILER_ATHERTON = 
 typedef struct gno_render_def {
     int lines;      /* sample lines per pixel row at the finest; default 18 */
     int base_lines; /* sample lines everywhere; default 2. Equal to lines: no refinement. Else lines must be an odd multiple of
-                       base_lines, base_lines at most 4, and pixels whose colour bends from line to line get all the lines */
-    double refine_above; /* bend (second difference, linear colour) that calls for more lines; default 0.03 */
+                       base_lines, base_lines at most 4, and pixels whose colour bends from line to line get more, or all, of the lines */
+    double refine_above; /* bend (second difference, linear colour) that calls for more lines; three times as much calls for all; default 0.025 */
     int threads;    /* 0 (default): one per processor */
     gno_terminator terminator;
     const gno_layers *layers; /* filled beside the picture; NULL (default): none */

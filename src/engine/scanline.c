@@ -14,7 +14,7 @@ gno_render_def gno_render_def_default(void)
     gno_render_def def;
     def.lines = 18;
     def.base_lines = 2;
-    def.refine_above = 0.03;
+    def.refine_above = 0.025;
     def.threads = 0;
     def.terminator = GNO_TERMINATOR_EXACT;
     def.layers = NULL;

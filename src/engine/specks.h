@@ -61,10 +61,10 @@ static inline void gnoi_speck_add(gnoi_specks *s, uint32_t i, int32_t a, int32_t
         s->by_line[line][i] += length;
 }
 
-/* Forgets all specks, which are done with. */
-static inline void gnoi_specks_clear(gnoi_specks *s)
+/* Forgets all specks, which are done with; so many there were. */
+static inline void gnoi_specks_clear(gnoi_specks *s, uint32_t count)
 {
-    s->first += s->count;
+    s->first += count;
     s->count = 0;
 }
 

@@ -4,9 +4,6 @@
 #include <math.h>
 #include <string.h>
 
-/* Marked runs of a row nearer than this many pixels are taken as one. */
-#define RUN_GAP 1
-
 int gnoi_tile_init(gnoi_tile *tile, const gnoi_frame_job *job)
 {
     gno_context *context = job->scene->context;
@@ -125,11 +122,29 @@ VECTOR_CLONES static void add_bends(const float *restrict a, const float *restri
     }
 }
 
+/* How many lines a pixel has, and how many it is to have, an odd multiple; `to` is 0 for no more. */
+typedef struct need {
+    int from, to;
+} need;
+
+/* Up to so many times the bend that calls for more lines, the middle number of them is enough. */
+#define MIDDLE_BEND 3
+
+/* A number of lines between the base lines and all, of which either is an odd multiple; or all where there is none. */
+static int middle_lines(const gno_render_def *def)
+{
+    int factor = def->lines / def->base_lines;
+    for (int d = 3; d < factor; d += 2)
+        if (factor % d == 0)
+            return def->base_lines * d;
+    return def->lines;
+}
+
 /* Marks the pixels of a row whose colour bends from line to line by more than the def allows: where it changes evenly the lines'
  * mean is right already. The lines next to the pixel's own, above and below, take part. */
-static void mark_bends(const gnoi_tile *tile, int row, unsigned char need[GNOI_TILE_W])
+static void mark_bends(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W])
 {
-    int n = tile->job->def.base_lines, i = row * GNOI_TILE_W;
+    int n = tile->job->def.base_lines, i = row * GNOI_TILE_W, middle = middle_lines(&tile->job->def);
     float limit = (float)tile->job->def.refine_above, largest[GNOI_TILE_W] = {0};
     for (int k = 0; k < 3; k++) {
         const float *a = &tile->line_acc[n - 1][k][i - GNOI_TILE_W], *b = &tile->line_acc[0][k][i];
@@ -140,45 +155,54 @@ static void mark_bends(const gnoi_tile *tile, int row, unsigned char need[GNOI_T
             b = c;
         }
     }
-    for (int x = 0; x < GNOI_TILE_W; x++)
-        need[x] = tile->thin[i + x] || largest[x] > limit;
+    for (int x = 0; x < GNOI_TILE_W; x++) {
+        needs[x].from = n;
+        needs[x].to = tile->thin[i + x] || largest[x] > MIDDLE_BEND * limit ? tile->job->def.lines : largest[x] > limit ? middle : 0;
+    }
 }
 
-static void mark_for_layers(const gnoi_tile *tile, int row, unsigned char need[GNOI_TILE_W])
+static void mark_for_layers(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W])
 {
-    for (int x = 0; x < tile->width; x++)
-        need[x] = (unsigned char)gnoi_tile_layers_need(tile, row * GNOI_TILE_W + x);
+    for (int x = 0; x < tile->width; x++) {
+        needs[x].from = (int)tile->weight[row * GNOI_TILE_W + x];
+        needs[x].to = gnoi_tile_layers_need(tile, row * GNOI_TILE_W + x) ? tile->job->def.lines : 0;
+    }
 }
 
-/* Marks which pixels of a row need all lines. */
-typedef void (*mark_needs)(const gnoi_tile *tile, int row, unsigned char need[GNOI_TILE_W]);
+/* Marks which pixels of a row need more lines. */
+typedef void (*mark_needs)(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W]);
 
+/* Neighbouring pixels that get the same lines. */
 typedef struct run {
     int first, last;
+    need need;
 } run;
 
-/* Runs of pixels of a row that need all lines; returns how many. */
-static int find_runs(const gnoi_tile *tile, int row, mark_needs mark, int gap, run runs[GNOI_TILE_W])
+/* Runs of pixels of a row that need more lines; returns how many. */
+static int find_runs(const gnoi_tile *tile, int row, mark_needs mark, run runs[GNOI_TILE_W])
 {
-    unsigned char need[GNOI_TILE_W];
+    need needs[GNOI_TILE_W];
     int n = 0;
-    mark(tile, row, need);
+    mark(tile, row, needs);
     for (int x = 0; x < tile->width; x++) {
-        if (!need[x])
+        if (!needs[x].to)
             continue;
-        if (n == 0 || x - runs[n - 1].last > gap)
-            runs[n++].first = x;
+        if (n == 0 || x - runs[n - 1].last > 1 || runs[n - 1].need.from != needs[x].from) {
+            runs[n].first = x;
+            runs[n++].need = needs[x];
+        }
         runs[n - 1].last = x;
+        runs[n - 1].need.to = needs[x].to > runs[n - 1].need.to ? needs[x].to : runs[n - 1].need.to;
     }
     return n;
 }
 
-/* The lines between the base lines over the row's runs, run after run. */
+/* The lines between those there are over the row's runs, run after run. */
 static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_count)
 {
-    int count = tile->job->def.lines, factor = count / tile->job->def.base_lines;
     for (int k = 0; k < run_count && !tile->lines.failed; k++) {
         uint32_t first = (uint32_t)tile->lines.line_count;
+        int count = runs[k].need.to, factor = count / runs[k].need.from;
         for (int i = 0; i < count; i++)
             if (i % factor != factor / 2)
                 gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, runs[k].first * GNOI_X_ONE, (runs[k].last + 1) * GNOI_X_ONE);
@@ -189,8 +213,8 @@ static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_co
     }
 }
 
-/* Adds lines where they are needed; returns 0 when they are nowhere. gap: as RUN_GAP. */
-static int plan_refinement(gnoi_tile *tile, mark_needs mark, int gap)
+/* Adds lines where they are needed; returns 0 when they are nowhere. */
+static int plan_refinement(gnoi_tile *tile, mark_needs mark)
 {
     gnoi_lines_reset(&tile->lines);
     tile->strip_count = 0;
@@ -199,7 +223,7 @@ static int plan_refinement(gnoi_tile *tile, mark_needs mark, int gap)
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
         tile->row_strip[row] = tile->strip_count;
         if (row > 0 && row <= tile->height)
-            add_fine_lines(tile, row, runs, find_runs(tile, row, mark, gap, runs));
+            add_fine_lines(tile, row, runs, find_runs(tile, row, mark, runs));
         tile->row_strip_end[row] = tile->strip_count;
     }
     tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;
@@ -239,12 +263,11 @@ static void make_rows(gnoi_tile *tile)
     gnoi_tile_flush(tile);
 }
 
-/* Where the colour called for no more lines the layers still may; the picture, which is written already, stays as it is. A pixel
- * must not get its lines twice, so no gap between runs is closed. */
+/* Where the colour called for no more lines, or not for all, the layers still may; the picture, which is written already, stays as it is. */
 static void make_layers(gnoi_tile *tile, size_t count)
 {
     tile->fragments.alone = 1;
-    if (tile->job->def.lines > tile->job->def.base_lines && plan_refinement(tile, mark_for_layers, 1)) {
+    if (tile->job->def.lines > tile->job->def.base_lines && plan_refinement(tile, mark_for_layers)) {
         gnoi_tile_draw(tile, count);
         make_rows(tile);
     }
@@ -279,13 +302,11 @@ int gnoi_tile_render(gnoi_tile *tile, size_t index)
     if (tile->failed)
         return 0;
     tile->judging = job->def.lines > job->def.base_lines;
-    tile->pixel_share = 1 / (float)job->def.base_lines;
     add_base_lines(tile);
     gnoi_tile_draw(tile, count);
     make_rows(tile);
     tile->judging = 0;
-    if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile, mark_bends, RUN_GAP)) {
-        tile->pixel_share = 1 / (float)(job->def.lines - job->def.base_lines);
+    if (job->def.lines > job->def.base_lines && !tile->failed && plan_refinement(tile, mark_bends)) {
         gnoi_tile_draw(tile, count);
         make_rows(tile);
     }

@@ -102,6 +102,7 @@ typedef struct gnoi_slot {
 typedef struct gnoi_facet {
     double plane[4][3]; /* nearness, then x, y, z of the normal, any length: fx, fy, f0 of each */
     double g[3];        /* the plane's normal on the viewer's side, unit */
+    float bend;         /* the most that a highlight bends in a whole pixel of it, as in gnoi_may_glint */
     uint32_t material;
 } gnoi_facet;
 
@@ -152,7 +153,7 @@ typedef struct gnoi_tile {
     uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
     uint32_t row_mask[GNOI_TILE_ROWS];     /* bit x: some line of the row passes pixel x */
     int strip_count, row_strip[GNOI_TILE_ROWS], row_strip_end[GNOI_TILE_ROWS]; /* strips that hold lines of each row */
-    gnoi_strip strips[GNOI_TILE_PIXELS / 2];
+    gnoi_strip strips[GNOI_TILE_PIXELS];
     size_t line_y_capacity, bar_capacity;
     double *line_y;                        /* beside the lines while polygons are drawn, and some zeros: their heights */
     float *bar;                            /* beside the lines: what is farther is hidden on all of it; -infinity while it has gaps */
@@ -196,7 +197,7 @@ typedef struct gnoi_tile {
     float row_cover[GNOI_TILE_W], row_by_line[GNOI_BASE_LINES][GNOI_TILE_W];
     int judging;                           /* base lines are being made for refinement: colours are kept by line */
     gnoi_batch batch;
-    float pixel_share;                     /* of a pixel that a line stands for among those being made */
+    float pixel_share[GNOI_TILE_W];        /* of each pixel of the row that a line stands for, among those being made */
     size_t intensity_count, intensity_capacity;
     double (*intensities)[3];
     size_t mapping_count, mapping_capacity;
@@ -334,9 +335,11 @@ int gnoi_tile_glint(const gnoi_tile *tile, const gnoi_slot *slot, int i, int row
 
 /* Whether a highlight may bend enough for that in a sample of this share of a pixel: a bound, by which most samples are passed over. A box varies by
  * a twelfth of its side squared along either axis, and its sides squared are taken to be as its area. */
+static inline int gnoi_bend_shows(float bend, float share) { return bend * share * share > 12 * GNOI_GLINT_ERROR; }
+
 static inline int gnoi_may_glint(const gnoi_slot *slot, const gnoi_tone *tone, float share)
 {
-    return slot->interp.turn * share * share * tone->glint > 12 * GNOI_GLINT_ERROR;
+    return gnoi_bend_shows(slot->interp.turn * tone->glint, share);
 }
 
 /* tile_layers.c: keeps what tile.cells and tile.lit hold of a pixel of `slot` in `row`; writes the tile's part of the layers from
@@ -345,7 +348,7 @@ int gnoi_tile_layers_init(gnoi_tile *tile);
 void gnoi_tile_layers_free(gnoi_tile *tile);
 void gnoi_tile_layers_start(gnoi_tile *tile);
 
-/* Whether pixel i, which has base lines only, needs all lines for its layers. */
+/* Whether pixel i, unless it has all lines, needs them for its layers. */
 int gnoi_tile_layers_need(const gnoi_tile *tile, int i);
 void gnoi_tile_layers_keep(gnoi_tile *tile, uint32_t slot, const gnoi_column *columns, int row, int pixel);
 void gnoi_tile_layers_write(gnoi_tile *tile);

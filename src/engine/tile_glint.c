@@ -179,7 +179,7 @@ int gnoi_tile_glint(const gnoi_tile *tile, const gnoi_slot *slot, int i, int row
     static const double gauss[2] = {-0.57735026918962576, 0.57735026918962576};
     static const double chebyshev[4] = {-0.79465447229176613, -0.18759247408507990, 0.18759247408507990, 0.79465447229176613};
     const gnoi_tone *tone = &tile->job->tones[slot->receiver.poly->material];
-    float share = tile->batch.coverage[i] * tile->pixel_share;
+    float share = tile->batch.coverage[i] * tile->pixel_share[column];
     double variance;
     box half;
     if (!is_near_highlight(tile, i, tone->glint_edge))

@@ -155,7 +155,7 @@ static uint32_t sole_at(const gnoi_tile *tile, int i)
 int gnoi_tile_layers_need(const gnoi_tile *tile, int i)
 {
     uint32_t sole = sole_at(tile, i);
-    return tile->weight[i] <= (float)tile->job->def.base_lines &&
+    return tile->weight[i] < (float)tile->job->def.lines &&
            (sole == SEVERAL || sole_at(tile, i - GNOI_TILE_W) != sole || sole_at(tile, i + GNOI_TILE_W) != sole);
 }
 

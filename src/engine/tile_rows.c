@@ -281,7 +281,7 @@ static void speckle(gnoi_tile *tile, int row, const gnoi_piece *piece, float dy,
 static size_t part_line(gnoi_tile *tile, int row, uint32_t line, size_t count)
 {
     const float dy = line_offset(tile, row, line);
-    const int base = base_line_of(tile, row, line), may_speckle = !tile->veiled && !tile->tinted && !tile->job->layers && !tile->job->textured;
+    const int base = base_line_of(tile, row, line), may_speckle = !tile->veiled && !tile->tinted && !tile->job->textured;
     for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
         gnoi_piece *piece = &tile->lines.pieces[p];
         gnoi_brief *brief = &tile->briefs[piece->slot];
@@ -298,17 +298,32 @@ static size_t part_line(gnoi_tile *tile, int row, uint32_t line, size_t count)
     return count;
 }
 
-/* Parts the row's pieces into specks and chains by slot; returns how many chains. Lines at one height follow each other: they meet the same
- * shadows. */
+/* Parts the row's pieces into specks and chains by slot; returns how many chains. Lines at one height follow each other, whatever strips they
+ * are of: they meet the same shadows. */
 static size_t part_pieces(gnoi_tile *tile, int row)
 {
-    uint32_t first = tile->row_line[row], lines = tile->row_line[row + 1] - first;
-    uint32_t strips = (uint32_t)(tile->row_strip_end[row] - tile->row_strip[row]), each = lines / strips;
-    size_t count = 0;
-    for (uint32_t i = 0; i < each; i++)
-        for (uint32_t s = 0; s < strips; s++)
-            count = part_line(tile, row, first + s * each + i, count);
-    return count;
+    const gnoi_strip *strips = tile->strips + tile->row_strip[row];
+    const int count = tile->row_strip_end[row] - tile->row_strip[row];
+    uint32_t line = tile->row_line[row], next[GNOI_TILE_W];
+    size_t chains = 0;
+    if (count == 1) {
+        for (; line < tile->row_line[row + 1]; line++)
+            chains = part_line(tile, row, line, chains);
+        return chains;
+    }
+    for (int s = 0; s < count; s++)
+        next[s] = strips[s].first;
+    for (double y = -HUGE_VAL, higher; y < HUGE_VAL; y = higher) {
+        higher = HUGE_VAL;
+        for (int s = 0; s < count; s++) {
+            const uint32_t end = strips[s].first + strips[s].count;
+            if (next[s] < end && tile->lines.lines[next[s]].y == y)
+                chains = part_line(tile, row, next[s]++, chains);
+            if (next[s] < end && tile->lines.lines[next[s]].y < higher)
+                higher = tile->lines.lines[next[s]].y;
+        }
+    }
+    return chains;
 }
 
 /* ---- background ------------------------------------------------------------------------------------------------------- */
@@ -364,6 +379,18 @@ static void add_background(gnoi_tile *tile, int row)
         add_times(&tile->acc[k][index], rest, tile->width, (float)background[k]);
 }
 
+/* What of a pixel each of the lines being made stands for. */
+static void set_shares(gnoi_tile *tile, int row)
+{
+    for (int x = 0; x < GNOI_TILE_W; x++)
+        tile->pixel_share[x] = 1 / (float)tile->job->def.base_lines;
+    for (int s = tile->row_strip[row]; s < tile->row_strip_end[row]; s++) {
+        const gnoi_strip *strip = &tile->strips[s];
+        for (int x = (int)strip->xa; x < (int)strip->xb && strip->per_row == 0; x++)
+            tile->pixel_share[x] = 1 / (float)strip->count;
+    }
+}
+
 void gnoi_tile_row(gnoi_tile *tile, int row)
 {
     size_t count;
@@ -374,6 +401,7 @@ void gnoi_tile_row(gnoi_tile *tile, int row)
         tile->failed = 1;
         return;
     }
+    set_shares(tile, row);
     count = part_pieces(tile, row);
     if (tile->veiled) {
         memset(tile->row_cover, 0, sizeof tile->row_cover);

@@ -221,7 +221,7 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
     }
     for (int k = 0; k < 3; k++)
         judged[k] = rgb[k] * even_factor(tone->mean[k], texel[k]);
-    add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, judged, coverage, &cells->by_line[0][column], GNOI_TILE_W);
+    add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, judged, coverage, &cells->by_line[0][column], GNOI_CELLS);
 }
 
 /* ---- samples for the batch ----------------------------------------------------------------------------------------- */
@@ -349,7 +349,7 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     for (int l = 0; l < job->def.base_lines && tile->judging; l++)
         tile->cover_by_line[l][i] = cells->by_line[l][column];
     b->tag[i] = (uint32_t)(row * GNOI_TILE_W + column);
-    if (slot->receiver.poly->shading == GNO_SHADING_PHONG && gnoi_may_glint(slot, tone, coverage * tile->pixel_share)) {
+    if (slot->receiver.poly->shading == GNO_SHADING_PHONG && gnoi_may_glint(slot, tone, coverage * tile->pixel_share[column])) {
         double at[GNOI_GLINT_POINTS][2];
         int points = gnoi_tile_glint(tile, slot, i, row, column, x, y, at);
         if (points > 1)

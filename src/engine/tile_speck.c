@@ -21,7 +21,7 @@ static void set_plane(double *to, const gnoi_screen_plane *p)
     to[2] = p->f0;
 }
 
-/* The facet of a triangle that is flat or of phong shading. */
+/* Makes the facet of a triangle that is flat or of phong shading. */
 static void set_facet(gnoi_tile *tile, gnoi_slot *slot, gnoi_facet *facet)
 {
     const gnoi_receiver *r = &slot->receiver;
@@ -37,6 +37,7 @@ static void set_facet(gnoi_tile *tile, gnoi_slot *slot, gnoi_facet *facet)
         const gnoi_screen_plane flat = {0, 0, facet->g[k]};
         set_plane(facet->plane[k + 1], r->poly->shading == GNO_SHADING_PHONG ? &slot->interp.normal[k] : &flat);
     }
+    facet->bend = r->poly->shading == GNO_SHADING_PHONG ? slot->interp.turn * tile->job->tones[facet->material].glint : 0;
 }
 
 /* Whether a slot is small and asks for nothing but its plane, normals, material and whole light or none of each lamp. */
@@ -193,13 +194,58 @@ static void set_coverage(gnoi_tile *tile, int row, int to, uint32_t from, int co
             tile->cover_by_line[l][to + i] = s->by_line[l][from + (uint32_t)i];
 }
 
-void gnoi_tile_sample_specks(gnoi_tile *tile, int row)
+/* One speck as a cell, for what knows of those alone. Returns its pixel. */
+static int set_cell(gnoi_tile *tile, uint32_t i)
+{
+    const gnoi_specks *s = &tile->specks;
+    int pixel = s->pixel[i];
+    tile->cells.length[pixel] = s->length[i];
+    tile->cells.mx[pixel] = s->mx[i];
+    tile->cells.my[pixel] = s->my[i];
+    for (int l = 0; l < GNOI_SPECK_LINES; l++)
+        tile->cells.by_line[l][pixel] = s->by_line[l][i];
+    return pixel;
+}
+
+/* What the specks cover, for the layers. */
+static void keep(gnoi_tile *tile, int row)
+{
+    const gnoi_specks *s = &tile->specks;
+    for (uint32_t i = 0; i < s->count && !tile->failed; i++)
+        gnoi_tile_layers_keep(tile, s->slot[i], &tile->columns[tile->slots[s->slot[i]].first_column], row, set_cell(tile, i));
+}
+
+/* Samples those alone in which a highlight may bend, and takes them away. */
+static void sample_bending(gnoi_tile *tile, int row)
+{
+    gnoi_specks *s = &tile->specks;
+    uint32_t n = 0;
+    for (uint32_t i = 0; i < s->count; i++) {
+        if (gnoi_bend_shows(tile->facets[s->slot[i]].bend, s->length[i] * tile->pixel_share[s->pixel[i]])) {
+            set_light(tile, tile->batch.count, i, 1);
+            gnoi_tile_sample(tile, &tile->slots[s->slot[i]], row, set_cell(tile, i), &tile->cells, NULL);
+            continue;
+        }
+        s->slot[n] = s->slot[i];
+        s->pixel[n] = s->pixel[i];
+        s->length[n] = s->length[i];
+        s->mx[n] = s->mx[i];
+        s->my[n] = s->my[i];
+        for (int l = 0; l < GNOI_SPECK_LINES; l++)
+            s->by_line[l][n] = s->by_line[l][i];
+        n++;
+    }
+    s->count = n;
+}
+
+static void sample(gnoi_tile *tile, int row)
 {
     const gnoi_view *view = &tile->job->view;
     gnoi_specks *s = &tile->specks;
     gnoi_batch *b = &tile->batch;
     double x0 = tile->x0 + 0.5, y0 = tile->y0 + row - 0.5;
     facets f;
+    sample_bending(tile, row);
     for (uint32_t i = s->count; i < s->count + STEP && s->count > 0; i++) {
         s->slot[i] = s->slot[s->count - 1];
         s->pixel[i] = 0;
@@ -220,8 +266,17 @@ void gnoi_tile_sample_specks(gnoi_tile *tile, int row)
         set_coverage(tile, row, b->count, from, count);
         b->count += count;
     }
-    if (b->count == GNOI_BATCH)
+    if (b->count > GNOI_BATCH - GNOI_GLINT_POINTS)
         gnoi_tile_flush(tile);
+}
+
+void gnoi_tile_sample_specks(gnoi_tile *tile, int row)
+{
+    uint32_t count = tile->specks.count;
+    if (tile->job->layers)
+        keep(tile, row);
+    if (!tile->fragments.alone)
+        sample(tile, row);
     tile->failed |= gnoi_stopped_at(tile->lines.context, tile->steps++);
-    gnoi_specks_clear(s);
+    gnoi_specks_clear(&tile->specks, count);
 }
