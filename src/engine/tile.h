@@ -263,6 +263,10 @@ void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, doub
 void gnoi_tile_set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y);
 void gnoi_tile_ask_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y);
 vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n);
+
+/* What sample i of the batch is lit by: the normal at picture point (x,y), with bumps; the texel asked for last, if the surface has one. */
+void gnoi_tile_set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int column, double x, double y);
+void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone);
 void gnoi_tile_forget_texels(gnoi_tile *tile);
 
 /* tile_stack.c: what a surface that is not opaque does to what lies behind it. */

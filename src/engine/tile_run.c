@@ -1,7 +1,7 @@
 /* tile_run.c -- samples of a surface in neighbouring pixels, set up side by side by vector code: see tile.h.
  *
- * The numbers are those of gnoi_tile_sample, bit by bit, which serves all that is rarer: textures, bumps, tints, intensities taken once,
- * highlights that bend within a pixel, lamps that reach a part of one.
+ * The numbers are those of gnoi_tile_sample, bit by bit, which serves all that is rarer: procedural textures and those with holes, tints,
+ * intensities taken once, highlights that bend within a pixel, lamps that reach a part of one.
  */
 #include "base/vector.h"
 #include "engine/tile.h"
@@ -129,12 +129,28 @@ static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int f
             tile->cover_by_line[l][at + i] = tile->cells.by_line[l][first + i];
 }
 
+/* Textures and bumps, for which every sample is on its own. */
+static void set_details(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, int at)
+{
+    const gnoi_cells *cells = &tile->cells;
+    for (int i = 0, p = first; i < count; i++, p++) {
+        double x = c->x0 + p + (double)(cells->mx[p] / cells->length[p]), y = c->y0 + (double)(cells->my[p] / cells->length[p]);
+        if (c->tone->textured)
+            gnoi_tile_ask_texel(tile, slot, row, p, x, y);
+        if (c->tone->bumped)
+            gnoi_tile_set_normal(tile, at + i, slot, row, p, x, y);
+        gnoi_tile_note_texel(tile, at + i, c->tone);
+    }
+}
+
 /* Whether the surface is one for this file. */
 static int is_plain(const gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *columns)
 {
     const gnoi_poly *poly = slot->receiver.poly;
-    int plain = (poly->shading == GNO_SHADING_FLAT || poly->shading == GNO_SHADING_PHONG) && !tile->job->textured && !tile->tinted &&
-                !tile->veiled && !tile->job->tones[poly->material].bumped;
+    const gnoi_tone *tone = &tile->job->tones[poly->material];
+    int plain = (poly->shading == GNO_SHADING_FLAT || poly->shading == GNO_SHADING_PHONG) && !tile->tinted && !tile->veiled;
+    if (tone->textured)
+        plain &= tile->job->scene->materials[poly->material].texture.kind == GNO_TEXTURE_IMAGE && !tone->has_holes;
     for (int j = 0; j < tile->job->lamp_count; j++)
         plain &= columns[j].state != GNOI_COLUMN_SPLIT;
     return plain;
@@ -185,6 +201,8 @@ int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *co
         else
             set_near(b, b->count, &tile->cells, p, &c);
         set_rest(tile, columns, row, p, b->count);
+        if (job->textured || c.tone->bumped)
+            set_details(tile, slot, &c, row, p, last - p + 1 < STEP ? last - p + 1 : STEP, b->count);
         b->count += last - p + 1 < STEP ? last - p + 1 : STEP;
     }
     if (b->count > GNOI_BATCH - GNOI_GLINT_POINTS)

@@ -236,7 +236,7 @@ static void set_point(gnoi_batch *b, int i, const gnoi_view *view, const gnoi_sc
     b->pz[i] = (float)p.z;
 }
 
-static void set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int column, double x, double y)
+void gnoi_tile_set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int column, double x, double y)
 {
     const gnoi_frame_job *job = tile->job;
     gnoi_batch *b = &tile->batch;
@@ -269,7 +269,7 @@ static void set_material(gnoi_batch *b, int i, const gnoi_tone *m, float coverag
     b->shininess[i] = m->shininess;
 }
 
-static void set_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
+void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
 {
     tile->texel_of[i] = tone->textured ? (uint16_t)(tile->texel_count - 1) : NO_TEXEL;
     for (int k = 0; k < 3; k++)
@@ -315,7 +315,7 @@ static void spread_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column,
         if (i > 0)
             copy_sample(tile, first + i, first);
         set_point(b, first + i, &job->view, &slot->receiver.nearness, at[i][0], at[i][1]);
-        set_normal(tile, first + i, slot, row, column, at[i][0], at[i][1]);
+        gnoi_tile_set_normal(tile, first + i, slot, row, column, at[i][0], at[i][1]);
     }
     b->count += count - 1;
 }
@@ -339,10 +339,10 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     if (tone->textured && !tint)
         gnoi_tile_ask_texel(tile, slot, row, column, x, y);
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
-    set_normal(tile, i, slot, row, column, x, y);
+    gnoi_tile_set_normal(tile, i, slot, row, column, x, y);
     set_material(b, i, tone, coverage, tint);
     if (job->textured)
-        set_texel(tile, i, tone);
+        gnoi_tile_note_texel(tile, i, tone);
     if (tile->tinted)
         gnoi_tile_tint_sample(tile, i, column, cells, tint != NULL);
     b->coverage[i] = coverage;
