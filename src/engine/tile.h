@@ -262,11 +262,16 @@ void gnoi_tile_mark_level(gnoi_tile *tile, double x0, double y0, double x1, doub
  * unit normal turned by its bump. */
 void gnoi_tile_set_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y);
 void gnoi_tile_ask_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y);
+void gnoi_tile_ask_texels(gnoi_tile *tile, gnoi_slot *slot, int row, int first, int count, const double *x, const double *y); /* a picture, no holes */
 vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n);
+/* tile_texture.c: turns the unit normals (n[k][i]: component k of normal i) of neighbouring samples at (x[i],y[i]), GNOI_RELIEF_RUN places, `count` of which
+ * are samples; 0, and nothing is done, where they have to be turned one by one. */
+int gnoi_tile_bump_run(gnoi_tile *tile, gnoi_slot *slot, int count, const double *x, const double *y, double (*n)[GNOI_RELIEF_RUN]);
 
-/* What sample i of the batch is lit by: the normal at picture point (x,y), with bumps; the texel asked for last, if the surface has one. */
+/* tile_shade.c: what sample i of the batch is lit by: the normal at picture point (x,y), with bumps; texel number `texel` of those
+ * asked for, if the surface is textured. */
 void gnoi_tile_set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int column, double x, double y);
-void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone);
+void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone, size_t texel);
 void gnoi_tile_forget_texels(gnoi_tile *tile);
 
 /* tile_stack.c: what a surface that is not opaque does to what lies behind it. */

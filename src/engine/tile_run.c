@@ -11,6 +11,8 @@
 /* Pixels taken at once, in loops of fixed length: what lies beyond the samples at hand counts for nothing. */
 #define STEP GNOI_CELLS_STEP
 
+_Static_assert(STEP == GNOI_RELIEF_RUN, "bumps are taken as many at a time");
+
 /* Fewer are done sooner one by one. */
 #define LEAST_RUN 3
 
@@ -129,18 +131,55 @@ static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int f
             tile->cover_by_line[l][at + i] = tile->cells.by_line[l][first + i];
 }
 
-/* Textures and bumps, for which every sample is on its own. */
+/* The normal at a sample, unit, before its bump; as in gnoi_tile_set_normal. */
+static vec3 unit_normal(const common *c, double x, double y)
+{
+    const gnoi_screen_plane *f = c->normal;
+    vec3 n;
+    if (!f)
+        return c->g;
+    n = v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y));
+    return v3_unit(v3_scale(n, (v3_dot(n, c->g) < 0 ? -1 : 1) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300)));
+}
+
+static void set_bumps(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, const places *p, int at)
+{
+    gnoi_batch *b = &tile->batch;
+    double n[3][STEP];
+    for (int i = 0; i < STEP; i++) {
+        vec3 own = i < count ? unit_normal(c, p->x[i], p->y[i]) : c->g;
+        n[0][i] = own.x;
+        n[1][i] = own.y;
+        n[2][i] = own.z;
+    }
+    if (!gnoi_tile_bump_run(tile, slot, count, p->x, p->y, n)) {
+        for (int i = 0; i < count; i++)
+            gnoi_tile_set_normal(tile, at + i, slot, row, first + i, p->x[i], p->y[i]);
+        return;
+    }
+    for (int i = 0; i < count; i++) {
+        b->nx[at + i] = (float)n[0][i];
+        b->ny[at + i] = (float)n[1][i];
+        b->nz[at + i] = (float)n[2][i];
+    }
+}
+
+/* Textures and bumps. */
 static void set_details(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, int at)
 {
     const gnoi_cells *cells = &tile->cells;
-    for (int i = 0, p = first; i < count; i++, p++) {
-        double x = c->x0 + p + (double)(cells->mx[p] / cells->length[p]), y = c->y0 + (double)(cells->my[p] / cells->length[p]);
-        if (c->tone->textured)
-            gnoi_tile_ask_texel(tile, slot, row, p, x, y);
-        if (c->tone->bumped)
-            gnoi_tile_set_normal(tile, at + i, slot, row, p, x, y);
-        gnoi_tile_note_texel(tile, at + i, c->tone);
+    places p;
+    for (int i = 0; i < STEP; i++) {
+        int pixel = first + (i < count ? i : count - 1);
+        p.x[i] = c->x0 + pixel + (double)(cells->mx[pixel] / cells->length[pixel]);
+        p.y[i] = c->y0 + (double)(cells->my[pixel] / cells->length[pixel]);
     }
+    for (int i = 0; i < count && tile->job->textured; i++)
+        gnoi_tile_note_texel(tile, at + i, c->tone, tile->texel_count + (size_t)i);
+    if (c->tone->textured)
+        gnoi_tile_ask_texels(tile, slot, row, first, count, p.x, p.y);
+    if (c->tone->bumped)
+        set_bumps(tile, slot, c, row, first, count, &p, at);
 }
 
 /* Whether the surface is one for this file. */

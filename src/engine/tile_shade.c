@@ -269,9 +269,9 @@ static void set_material(gnoi_batch *b, int i, const gnoi_tone *m, float coverag
     b->shininess[i] = m->shininess;
 }
 
-void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone)
+void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone, size_t texel)
 {
-    tile->texel_of[i] = tone->textured ? (uint16_t)(tile->texel_count - 1) : NO_TEXEL;
+    tile->texel_of[i] = tone->textured ? (uint16_t)texel : NO_TEXEL;
     for (int k = 0; k < 3; k++)
         tile->even[k][i] = tone->mean[k];
 }
@@ -342,7 +342,7 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     gnoi_tile_set_normal(tile, i, slot, row, column, x, y);
     set_material(b, i, tone, coverage, tint);
     if (job->textured)
-        gnoi_tile_note_texel(tile, i, tone);
+        gnoi_tile_note_texel(tile, i, tone, tile->texel_count - 1);
     if (tile->tinted)
         gnoi_tile_tint_sample(tile, i, column, cells, tint != NULL);
     b->coverage[i] = coverage;

@@ -80,6 +80,31 @@ void gnoi_tile_ask_texel(gnoi_tile *tile, gnoi_slot *slot, int row, int column, 
     memcpy(texel, tile->texel, sizeof tile->texel);
 }
 
+/* Whether the pattern at the first of the samples is that at all of them. */
+static int is_one_pattern(const gnoi_mapping *mapping, const gnoi_interp *interp, double x, double y)
+{
+    if (mapping->on_corners)
+        return interp->triangle_count == 1 || gnoi_interp_depth(interp, x, y) >= 0;
+    return mapping->place.map == GNO_MAP_PLANAR;
+}
+
+void gnoi_tile_ask_texels(gnoi_tile *tile, gnoi_slot *slot, int row, int first, int count, const double *x, const double *y)
+{
+    const gno_texture *texture = &tile->job->scene->materials[slot->receiver.poly->material].texture;
+    gnoi_sight sight = sight_of(tile, slot);
+    gnoi_mapping *mapping = seek_mappings(tile, slot);
+    const gnoi_pattern *pattern = mapping ? gnoi_mapping_seek(mapping, &sight, texture, x[0], y[0]) : NULL;
+    int is_one = mapping && is_one_pattern(mapping, &slot->interp, x[count - 1], y[count - 1]);
+    for (int i = 0; i < count; i++, tile->texel_count++) {
+        double middle_x = tile->x0 + first + i + 0.5, middle_y = tile->y0 + row - 0.5;
+        float *texel = tile->asked[tile->texel_count];
+        if (is_one)
+            gnoi_looks_ask(&tile->looks, &tile->job->scene->images[texture->image], texture, pattern, middle_x, middle_y, x[i], y[i], texel);
+        else if (mapping)
+            gnoi_texture_ask(&sight, texture, mapping, middle_x, middle_y, x[i], y[i], &tile->looks, texel);
+    }
+}
+
 vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n)
 {
     uint32_t material = slot->receiver.poly->material;
@@ -89,4 +114,18 @@ vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, dou
         return n;
     return gnoi_relief_normal(&sight, &tile->job->scene->materials[material].bump, &mappings[!tile->job->tones[material].one_place],
                               tile->x0 + column + 0.5, tile->y0 + row - 0.5, x, y, n);
+}
+
+int gnoi_tile_bump_run(gnoi_tile *tile, gnoi_slot *slot, int count, const double *x, const double *y, double (*n)[GNOI_RELIEF_RUN])
+{
+    uint32_t material = slot->receiver.poly->material;
+    const gno_bump *bump = &tile->job->scene->materials[material].bump;
+    gnoi_sight sight = sight_of(tile, slot);
+    gnoi_mapping *mapping = bump->kind == GNO_BUMP_HEIGHT && bump->texture.kind == GNO_TEXTURE_IMAGE ? seek_mappings(tile, slot) : NULL;
+    const gnoi_pattern *pattern;
+    if (!mapping)
+        return 0;
+    mapping += !tile->job->tones[material].one_place;
+    pattern = gnoi_mapping_seek(mapping, &sight, &bump->texture, x[0], y[0]);
+    return is_one_pattern(mapping, &slot->interp, x[count - 1], y[count - 1]) && gnoi_relief_run(&sight, bump, pattern, count, x, y, n);
 }

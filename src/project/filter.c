@@ -35,15 +35,16 @@ typedef struct weighed {
     float value[4], weight;
 } weighed;
 
-/* Solid bytes, all of them within the picture: `count` rows, each with as many cells for every lane, for counts that change from
- * lane to lane cost more than what they spare. */
+/* Solid bytes, their columns within the picture, their rows too or in the next repetition: `count` rows, each with as many cells for
+ * every lane, for counts that change from lane to lane cost more than what they spare. */
 static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, int count, int column, int row, int lane, weighed *sum)
 {
-    const float *decode = look->image->decode;
-    unsigned char(*line)[4] = look->image->bytes + (size_t)row * (size_t)look->image->width;
+    const gnoi_image *image = look->image;
+    const float *decode = image->decode;
     float red = sum->value[0], green = sum->value[1], blue = sum->value[2], weight = sum->weight;
-    for (int r = 0; r < count; r++, line += look->image->width) {
-        unsigned char(*v)[4] = line + column + (int)rows[r].first[lane];
+    row += row < 0 ? image->height : 0;
+    for (int r = 0; r < count; r++, row = row + 1 == image->height ? 0 : row + 1) {
+        unsigned char(*v)[4] = image->bytes + (size_t)row * (size_t)image->width + (size_t)(column + (int)rows[r].first[lane]);
         for (int c = 0; c < rows[r].most; c++) {
             float area = rows[r].area[c][lane];
             red += area * decode[v[c][0]];
@@ -109,6 +110,13 @@ static void fetch_rows(const gnoi_looks *looks, int look, const gnoi_filter_lane
             FETCH(&image->bytes[(size_t)row * (size_t)image->width + (size_t)column]);
 }
 
+/* Whether `count` rows are rows of the picture, one after the other, the first one after the last. */
+static int rows_follow(const gnoi_look *look, int row, int count)
+{
+    int height = look->image->height;
+    return (row >= 0 && row + count <= height) || (look->wrap == GNO_WRAP_REPEAT && row >= -height && row < height && count <= height);
+}
+
 static void answer_together(const gnoi_looks *looks, const unsigned short *which, int count)
 {
     gnoi_filter_lanes lanes;
@@ -133,7 +141,7 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
             const gnoi_look *l = &looks->look[which[i]];
             int column = looks->lanes.column[which[i]], first = looks->lanes.row[which[i]] + (int)lanes.first_row[i] + r0;
             int m = lanes.rows[i] - r0 < n ? lanes.rows[i] - r0 : n, level = level_of(looks, which[i]);
-            if (level == 0 && l->image->is_solid && first >= 0 && first + m <= l->image->height && column + (int)lanes.low_x[i] - 1 >= 0 &&
+            if (level == 0 && l->image->is_solid && rows_follow(l, first, m) && column + (int)lanes.low_x[i] - 1 >= 0 &&
                 column + (int)lanes.high_x[i] + 1 + most <= l->image->width) {
                 add_bytes(l, cells, m, column, first, i, &sum[i]);
                 continue;

@@ -5,8 +5,11 @@
  * along S and T are steps of the point, Q_x and Q_y, found from how point and pattern change over the picture.
  */
 #include "shade/relief.h"
+#include "base/vector.h"
 #include "project/filter.h"
 #include <math.h>
+
+#define INLINE static inline __attribute__((always_inline))
 
 #define MOST_DRAWN_OUT 4.0 /* a pixel is taken as long as this many times its width at the most, or its bumps would fade too soon */
 
@@ -17,11 +20,9 @@ typedef struct frame {
     double length, width;  /* of the pixel, in patterns */
 } frame;
 
-/* 0 where the pattern does not change over the picture. */
-static int find_frame(const gnoi_sight *sight, const gnoi_pattern *p, double x, double y, frame *f)
+/* 0 where the pattern does not change over the picture. Orthographic or not is a constant at each call. */
+INLINE int frame_at(const gnoi_view *view, int orthographic, const gnoi_screen_plane *nearness, const gnoi_pattern *p, double x, double y, frame *f)
 {
-    const gnoi_view *view = sight->view;
-    const gnoi_screen_plane *nearness = sight->nearness;
     double w = gnoi_plane_at(&p->w, x, y), z = gnoi_plane_at(nearness, x, y), k = 1 / w, sx, sy, tx, ty, det, a, b;
     vec3 dx = v3_scale(view->right, view->unit), dy = v3_scale(view->up, -view->unit);
     f->s = gnoi_plane_at(&p->s, x, y) * k;
@@ -32,14 +33,13 @@ static int find_frame(const gnoi_sight *sight, const gnoi_pattern *p, double x, 
     a = sx * sx + tx * tx;
     b = sy * sy + ty * ty;
     a = a > b ? a : b;
-    if (!(w > 0) || !(z > 0 || view->orthographic) || !(fabs(det) > 1e-12 * a))
-        return 0;
-    if (view->orthographic) {
+    if (orthographic) {
         dx = v3_mad(dx, view->forward, -nearness->fx);
         dy = v3_mad(dy, view->forward, -nearness->fy);
         k = 1 / det;
     } else {
-        vec3 ray = v3_sub(gnoi_view_point(view, x, y, z), view->eye);
+        double u = (x - 0.5 * view->width) * view->unit, v = (y - 0.5 * view->height) * view->unit;
+        vec3 ray = v3_scale(v3_add(v3_sub(v3_scale(view->right, u), v3_scale(view->up, v)), view->forward), 1 / z);
         dx = v3_mad(dx, ray, -nearness->fx);
         dy = v3_mad(dy, ray, -nearness->fy);
         k = 1 / (z * det);
@@ -48,7 +48,47 @@ static int find_frame(const gnoi_sight *sight, const gnoi_pattern *p, double x, 
     f->width = fabs(det) / f->length;
     f->qx = v3_scale(v3_sub(v3_scale(dx, ty), v3_scale(dy, tx)), k);
     f->qy = v3_scale(v3_sub(v3_scale(dy, sx), v3_scale(dx, sy)), k);
-    return 1;
+    return (w > 0) & ((z > 0) | orthographic) & (fabs(det) > 1e-12 * a);
+}
+
+static int find_frame(const gnoi_sight *sight, const gnoi_pattern *p, double x, double y, frame *f)
+{
+    return frame_at(sight->view, sight->view->orthographic, sight->nearness, p, x, y, f);
+}
+
+/* Frames side by side. */
+typedef struct frames {
+    double s[GNOI_RELIEF_RUN], t[GNOI_RELIEF_RUN], length[GNOI_RELIEF_RUN], width[GNOI_RELIEF_RUN];
+    double qx[3][GNOI_RELIEF_RUN], qy[3][GNOI_RELIEF_RUN];
+    double good[GNOI_RELIEF_RUN]; /* 1 or 0 */
+} frames;
+
+INLINE void frames_at(const gnoi_view *restrict v, int orthographic, const gnoi_screen_plane *restrict n, const gnoi_pattern *restrict p,
+                      const double *restrict x, const double *restrict y, frames *restrict q)
+{
+    const gnoi_view view = *v;
+    const gnoi_screen_plane nearness = *n;
+    const gnoi_pattern pattern = *p;
+    for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
+        frame f;
+        q->good[i] = frame_at(&view, orthographic, &nearness, &pattern, x[i], y[i], &f) ? 1.0 : 0.0;
+        q->s[i] = f.s, q->t[i] = f.t;
+        q->length[i] = f.length, q->width[i] = f.width;
+        q->qx[0][i] = f.qx.x, q->qx[1][i] = f.qx.y, q->qx[2][i] = f.qx.z;
+        q->qy[0][i] = f.qy.x, q->qy[1][i] = f.qy.y, q->qy[2][i] = f.qy.z;
+    }
+}
+
+VECTOR_CLONES static void find_near_frames(const gnoi_view *restrict view, const gnoi_screen_plane *restrict nearness,
+                                           const gnoi_pattern *restrict p, const double *restrict x, const double *restrict y, frames *restrict q)
+{
+    frames_at(view, 0, nearness, p, x, y, q);
+}
+
+VECTOR_CLONES static void find_far_frames(const gnoi_view *restrict view, const gnoi_screen_plane *restrict nearness,
+                                          const gnoi_pattern *restrict p, const double *restrict x, const double *restrict y, frames *restrict q)
+{
+    frames_at(view, 1, nearness, p, x, y, q);
 }
 
 /* ---- heights of a picture ------------------------------------------------------------------------------------------------- */
@@ -135,15 +175,57 @@ static void slope_of(const gnoi_image *image, const gno_texture *how, const fram
         slope[k] = part < 1 ? slope[k] + part * (coarse[k] - slope[k]) : coarse[k];
 }
 
+INLINE vec3 raise_by(double amount, vec3 qx, vec3 qy, double by_s, double by_t, vec3 n)
+{
+    vec3 across = v3_cross(qx, qy);
+    double size = sqrt(sqrt(v3_dot(qx, qx) * v3_dot(qy, qy))), k = amount * size / v3_dot(across, across);
+    n = v3_mad(n, v3_cross(qy, across), -k * by_s);
+    return v3_mad(n, v3_cross(across, qx), -k * by_t);
+}
+
 static vec3 raise(const gnoi_image *image, const gno_bump *bump, const frame *f, vec3 n)
 {
-    double slope[2], size, k;
-    vec3 across = v3_cross(f->qx, f->qy);
+    double slope[2];
     slope_of(image, &bump->texture, f, slope);
-    size = sqrt(sqrt(v3_dot(f->qx, f->qx) * v3_dot(f->qy, f->qy)));
-    k = bump->amount * size / v3_dot(across, across);
-    n = v3_mad(n, v3_cross(f->qy, across), -k * slope[0]);
-    return v3_mad(n, v3_cross(across, f->qx), -k * slope[1]);
+    return raise_by(bump->amount, f->qx, f->qy, slope[0], slope[1], n);
+}
+
+VECTOR_CLONES static void raise_all(double amount, const frames *restrict f, const double (*restrict slope)[GNOI_RELIEF_RUN],
+                                    double (*restrict n)[GNOI_RELIEF_RUN])
+{
+    for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
+        vec3 qx = v3(f->qx[0][i], f->qx[1][i], f->qx[2][i]), qy = v3(f->qy[0][i], f->qy[1][i], f->qy[2][i]);
+        vec3 m = raise_by(amount, qx, qy, slope[0][i], slope[1][i], v3(n[0][i], n[1][i], n[2][i]));
+        n[0][i] = m.x;
+        n[1][i] = m.y;
+        n[2][i] = m.z;
+    }
+}
+
+int gnoi_relief_run(const gnoi_sight *sight, const gno_bump *bump, const gnoi_pattern *pattern, int count, const double *x, const double *y,
+                    double (*n)[GNOI_RELIEF_RUN])
+{
+    const gnoi_image *image = &sight->scene->images[bump->texture.image];
+    frames q;
+    double slope[2][GNOI_RELIEF_RUN] = {{0}};
+    int good = 1;
+    if (sight->view->orthographic)
+        find_far_frames(sight->view, sight->nearness, pattern, x, y, &q);
+    else
+        find_near_frames(sight->view, sight->nearness, pattern, x, y, &q);
+    for (int i = 0; i < count; i++)
+        good &= q.good[i] > 0;
+    for (int i = 0; i < count && good; i++) {
+        double own[2];
+        frame f;
+        f.s = q.s[i], f.t = q.t[i];
+        f.length = q.length[i], f.width = q.width[i];
+        slope_of(image, &bump->texture, &f, own);
+        slope[0][i] = own[0], slope[1][i] = own[1];
+    }
+    if (good)
+        raise_all(bump->amount, &q, (const double(*)[GNOI_RELIEF_RUN])slope, n);
+    return good;
 }
 
 /* ---- normals of a picture --------------------------------------------------------------------------------------------------- */

@@ -13,4 +13,11 @@
  * of unit length. */
 vec3 gnoi_relief_normal(const gnoi_sight *sight, const gno_bump *bump, gnoi_mapping *mapping, double x, double y, double xs, double ys, vec3 n);
 
+#define GNOI_RELIEF_RUN 8
+
+/* The same for heights of a picture at `count` samples at once, n[k][i] being component k of normal i; the pattern is that of all of them.
+ * Beyond `count` the arrays hold numbers too. Returns 0 with n as it was where some sample has to be looked at alone. */
+int gnoi_relief_run(const gnoi_sight *sight, const gno_bump *bump, const gnoi_pattern *pattern, int count, const double *xs, const double *ys,
+                    double (*n)[GNOI_RELIEF_RUN]);
+
 #endif
