@@ -10,8 +10,8 @@ trap 'rm -rf "$work"' EXIT
 status=0
 flags='-std=c11 -O1 -ffp-contract=off -pthread -D_POSIX_C_SOURCE=200809L -D_FILE_OFFSET_BITS=64 -Iinclude -Isrc -Itests
     -fno-math-errno -fno-trapping-math -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror'
-sources="$(ls src/{base,scene,project,clip,shadow,scan,shade,engine}/*.c) src/io/picture.c src/io/picture_pfm.c src/io/atomic_file.c
-    src/io/cryptomatte.c"
+sources="$(ls src/{base,scene,project,clip,shadow,scan,shade,engine}/*.c) src/io/picture.c src/io/picture_pfm.c src/io/file_name.c src/io/atomic_file.c
+    src/io/cryptomatte.c src/io/text_file.c"
 
 build() { # name, then a compiler with its flags
     local name=$1
