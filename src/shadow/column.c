@@ -188,8 +188,8 @@ static int look_at_group(const struct gnoi_request *r, const gnoi_view *view, co
     if (near->rim.count > 0 || !gnoi_pair_make(&p, columns->scene, view, columns->lamp, r->receiver) ||
         !gnoi_region_make(columns->scene, view, &casters->far.frame, r->receiver, &region, boxes, &box_count))
         return 1;
-    *state = gnoi_sheet_at(&p, casters, gnoi_region_centre(&p, &casters->far.frame, &region), columns);
-    return *state != GNOI_SHEET_NO_MEMORY;
+    *state = gnoi_sheet_at(&p, casters, gnoi_region_centre(&p, &casters->far.frame, &region));
+    return 1;
 }
 
 /* One receiver for itself. */

@@ -55,12 +55,12 @@ typedef struct parting {
 
 static const gnoi_eight *children_of(const gnoi_tree *tree, gnoi_held h) { return &tree->nodes[tree->level_first[h.level] + h.node]; }
 
+/* Of eight bits: pairs, then fours, then all of them added up. */
 static unsigned count_bits(unsigned mask)
 {
-    unsigned n = 0;
-    for (; mask; mask &= mask - 1)
-        n++;
-    return n;
+    mask -= mask >> 1 & 0x55;
+    mask = (mask & 0x33) + (mask >> 2 & 0x33);
+    return (mask + (mask >> 4)) & 15;
 }
 
 /* One node whose box meets the group's. early: it ends before the group. */

@@ -59,7 +59,7 @@ gnoi_sheet_state gnoi_sheet_try_apart(const gnoi_pair *p, const gnoi_casters *ca
 void gnoi_list_drop_repeats(gnoi_list *list);
 
 /* Where no contour edge and no far side comes near: ALL or NOWHERE, as at this point of the receiver's plane. */
-gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, gnoi_columns *columns);
+gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point);
 
 /* Gathers the contour edges of columns->near, unless that was done. Returns 0 when memory fails. */
 int gnoi_sheet_gather_rims(const gnoi_casters *casters, gnoi_columns *columns);

@@ -8,6 +8,8 @@
  */
 #include "shadow/region.h"
 
+#include <limits.h>
+
 typedef enum place { ABOVE, BEHIND, THROUGH } place;
 
 static place place_of(const gnoi_pair *p, const gnoi_poly *poly, int *touching)
@@ -71,31 +73,42 @@ static int is_above(const gnoi_pair *p, const gnoi_poly *poly, vec3 point)
     return at == ABOVE && (p->lamp->directional || at_lamp * (at_lamp - at_point) > 0);
 }
 
-/* Number of far sides between the lamp and a point of the receiver, counting no further than `enough`; -1 when memory fails. */
-static int count_above(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, int enough, gnoi_columns *columns)
+/* The far sides between the lamp and a point, one by one. */
+typedef struct counting {
+    const gnoi_pair *pair;
+    const gnoi_tree *far;
+    across line;
+    vec3 point;
+    int count, enough;
+} counting;
+
+static int count_node(void *user, uint32_t node, unsigned mask)
 {
-    const gnoi_prepared *prep = &p->scene->prepared;
-    across a = across_ray(p->lamp, point);
+    counting *c = user;
+    const gno_scene *scene = c->pair->scene;
+    for (; mask && c->count < c->enough; mask &= mask - 1) {
+        const gnoi_poly *poly = &scene->prepared.polys[c->far->caster[node * GNOI_TREE_FAN + gnoi_lowest_bit(mask)]];
+        c->count += meets(scene, &c->line, poly) && is_above(c->pair, poly, c->point);
+    }
+    return c->count < c->enough;
+}
+
+/* Number of far sides between the lamp and a point of the receiver, counting no further than `enough`. */
+static int count_above(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, int enough)
+{
+    counting c = {p, &casters->far, across_ray(p->lamp, point), point, 0, enough};
     gnoi_lpoint l;
     gnoi_lbox box;
-    int count = 0;
     if (!gnoi_frame_locate(&casters->far.frame, &point, 1, &l))
         return 0;
     gnoi_frame_box(&casters->far.frame, &l, 1, &box);
-    columns->found.count = 0;
-    if (!gnoi_tree_query(columns->context, &casters->far, &box, NULL, &columns->found))
-        return -1;
-    for (size_t i = 0; i < columns->found.count && count < enough; i++) {
-        const gnoi_poly *poly = &prep->polys[columns->found.items[i]];
-        count += meets(p->scene, &a, poly) && is_above(p, poly, point);
-    }
-    return count;
+    gnoi_tree_walk(&casters->far, &box, count_node, &c);
+    return c.count;
 }
 
-gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point, gnoi_columns *columns)
+gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point)
 {
-    int count = count_above(p, casters, point, 1, columns);
-    return count < 0 ? GNOI_SHEET_NO_MEMORY : count ? GNOI_SHEET_ALL : GNOI_SHEET_NOWHERE;
+    return count_above(p, casters, point, 1) ? GNOI_SHEET_ALL : GNOI_SHEET_NOWHERE;
 }
 
 /* ---- contour edges over the region ---------------------------------------------------------------------------------- */
@@ -278,7 +291,7 @@ gnoi_sheet_state gnoi_sheet_try(const gnoi_pair *p, const gnoi_casters *casters,
     state = add_rims(p, casters, &region->box, probe, columns, column);
     if (state == GNOI_SHEET_PIERCED)
         forget_rims(columns, column);
-    return state == GNOI_SHEET_NOWHERE ? gnoi_sheet_at(p, casters, gnoi_region_centre(p, &casters->far.frame, region), columns) : state;
+    return state == GNOI_SHEET_NOWHERE ? gnoi_sheet_at(p, casters, gnoi_region_centre(p, &casters->far.frame, region)) : state;
 }
 
 /* All contour edges in the boxes of a region in parts. */
@@ -403,14 +416,14 @@ static int rim_change(const gnoi_rim *r, double px, double py, double qx, double
     return q < 0 ? r->step : -r->step;
 }
 
-/* The number of far sides over the point of the receiver that is seen at (x,y); -1 when memory fails. */
+/* The number of far sides over the point of the receiver that is seen at (x,y). */
 static int count_at(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
-                    const gnoi_receiver *r, double x, double y, gnoi_columns *columns)
+                    const gnoi_receiver *r, double x, double y)
 {
     gnoi_pair p;
     if (!gnoi_pair_make(&p, scene, view, lamp, r))
         return 0;
-    return count_above(&p, casters, gnoi_view_point(view, x, y, gnoi_plane_at(&r->nearness, x, y)), 1 << 30, columns);
+    return count_above(&p, casters, gnoi_view_point(view, x, y, gnoi_plane_at(&r->nearness, x, y)), INT_MAX);
 }
 
 /* Carries what the column knows at one point straight to (x,y); 0 when that cannot be. Both are in the region, which is convex. */
@@ -446,9 +459,7 @@ int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gn
     n = cross_rims(columns, &list, y);
     x = widest_middle(columns->steps, n, xa, xb);
     if (!carry(receiver, columns, x, y, column))
-        column->count = count_at(scene, view, lamp, casters, receiver, x, y, columns);
-    if (column->count < 0)
-        return 0;
+        column->count = count_at(scene, view, lamp, casters, receiver, x, y);
     column->known = 1;
     column->at_x = x;
     column->at_y = y;

@@ -11,23 +11,20 @@
 /* Classes of size: each holds boxes 16 times smaller than the one before, by the binary exponent of the longer side. */
 #define SIZE_CLASSES 8
 #define CLASS_OCTAVES 4
-#define MOST_BITS 8 /* of a cell's coordinate */
-
-/* What is known of the boxes of one class. */
-typedef struct size_range {
-    float lo[2], hi[2], scale[2]; /* of the sums of both sides */
-    uint32_t first;               /* of its cells */
-    int used;
-} size_range;
+#define LEAST_BITS 4 /* of a cell's coordinate */
+#define MOST_BITS 8
+#define CELL_BOXES 128 /* boxes to a cell, at most as long as there are more bits */
+#define SAMPLES 1024   /* boxes, about, by which the size of the cells is found */
+#define SPREAD 3       /* standard deviations that they cover */
 
 /* Boxes are put into cells along a Hilbert curve, those of a cell in the order in which they come: polygons that lie together. */
 typedef struct ordering {
     const gnoi_boxes *boxes;
-    size_range range[SIZE_CLASSES];
-    unsigned bits;      /* of a cell's coordinates */
-    uint32_t *cell;     /* of each box: its class, then its cell */
-    size_t cell_count;
-    uint32_t *place;    /* of each cell: how many boxes, then where the next one goes */
+    float low[2], scale[2]; /* of the cells, in sums of both sides */
+    unsigned bits;          /* of a cell's coordinates */
+    uint32_t *cell;         /* of each box */
+    size_t cell_count;      /* those of each size class follow those of the one before */
+    uint32_t *place;        /* of each cell: how many boxes, then where the next one goes */
     uint32_t *order;
 } ordering;
 
@@ -64,48 +61,46 @@ static uint32_t hilbert(uint32_t x, uint32_t y, unsigned bits)
 static uint32_t quantise(float x, float lo, float scale, float top)
 {
     float q = (x - lo) * scale;
-    return (uint32_t)(q < 0 ? 0 : q > top ? top : q);
+    q = q > 0 ? q : 0; /* a box that is everywhere has no middle */
+    return (uint32_t)(int32_t)(q < top ? q : top);
 }
 
-static void set_classes(ordering *o)
+static double middle_of(const gnoi_lbox *b, int axis) { return axis == 0 ? (double)b->u0 + (double)b->u1 : (double)b->v0 + (double)b->v1; }
+
+/* The cells cover most of the boxes: those of the others count to the border. */
+static void set_extent(ordering *o)
 {
     const gnoi_boxes *b = o->boxes;
-    const int whole = exponent(gnoi_box_side(&b->whole));
-    for (int c = 0; c < SIZE_CLASSES; c++) {
-        o->range[c].lo[0] = o->range[c].lo[1] = FLT_MAX;
-        o->range[c].hi[0] = o->range[c].hi[1] = -FLT_MAX;
-        o->range[c].used = 0;
-    }
-    for (size_t i = 0; i < b->count; i++) {
-        unsigned c = size_class(&b->box[i], whole);
-        size_range *r = &o->range[c];
-        float u = b->box[i].u0 + b->box[i].u1, v = b->box[i].v0 + b->box[i].v1;
-        o->cell[i] = c;
-        r->lo[0] = u < r->lo[0] ? u : r->lo[0];
-        r->lo[1] = v < r->lo[1] ? v : r->lo[1];
-        r->hi[0] = u > r->hi[0] ? u : r->hi[0];
-        r->hi[1] = v > r->hi[1] ? v : r->hi[1];
-        r->used = 1;
-    }
-    for (int c = 0; c < SIZE_CLASSES; c++) {
-        size_range *r = &o->range[c];
-        for (int k = 0; k < 2 && r->used; k++)
-            r->scale[k] = r->hi[k] > r->lo[k] ? (float)((1 << o->bits) - 1) / (r->hi[k] - r->lo[k]) : 0;
-        r->first = (uint32_t)o->cell_count;
-        o->cell_count += r->used ? (size_t)1 << 2 * o->bits : 0;
+    const size_t step = 1 + b->count / SAMPLES, count = (b->count + step - 1) / step;
+    for (int k = 0; k < 2; k++) {
+        const double least = 2 * (double)(k == 0 ? b->whole.u0 : b->whole.v0), most = 2 * (double)(k == 0 ? b->whole.u1 : b->whole.v1);
+        double sum = 0, squares = 0, mean, reach, low, high;
+        for (size_t i = 0; i < b->count; i += step) {
+            double x = middle_of(&b->box[i], k) - least;
+            sum += x;
+            squares += x * x;
+        }
+        mean = sum / (double)count;
+        reach = SPREAD * sqrt(fmax(squares / (double)count - mean * mean, 0));
+        low = fmax(least, least + mean - reach);
+        high = fmin(most, least + mean + reach);
+        o->low[k] = (float)low;
+        o->scale[k] = high > low ? (float)((1 << o->bits) / (high - low)) : 0;
     }
 }
 
 static void set_cells(ordering *o)
 {
     const gnoi_boxes *b = o->boxes;
-    const float top = (float)((1 << o->bits) - 1);
+    const int whole = exponent(gnoi_box_side(&b->whole));
+    const unsigned bits = o->bits;
+    const float top = (float)((1 << bits) - 1), u_low = o->low[0], v_low = o->low[1], u_scale = o->scale[0], v_scale = o->scale[1];
     for (size_t i = 0; i < b->count; i++) {
-        const size_range *r = &o->range[o->cell[i]];
         const gnoi_lbox *x = &b->box[i];
-        uint32_t u = quantise(x->u0 + x->u1, r->lo[0], r->scale[0], top), v = quantise(x->v0 + x->v1, r->lo[1], r->scale[1], top);
-        o->cell[i] = r->first + hilbert(u, v, o->bits);
-        o->place[o->cell[i]]++;
+        uint32_t u = quantise(x->u0 + x->u1, u_low, u_scale, top), v = quantise(x->v0 + x->v1, v_low, v_scale, top);
+        uint32_t cell = size_class(x, whole) << 2 * bits | hilbert(u, v, bits);
+        o->cell[i] = cell;
+        o->place[cell]++;
     }
 }
 
@@ -128,14 +123,15 @@ static uint32_t *order_boxes(const gnoi_boxes *b)
     ordering o;
     memset(&o, 0, sizeof o);
     o.boxes = b;
-    for (o.bits = 2; o.bits < MOST_BITS && (size_t)1 << 2 * o.bits < b->count; o.bits += 2)
+    for (o.bits = LEAST_BITS; o.bits < MOST_BITS && (size_t)CELL_BOXES << 2 * o.bits < b->count; o.bits += 2)
         ;
+    o.cell_count = (size_t)SIZE_CLASSES << 2 * o.bits;
     o.order = gnoi_malloc(context, b->count, sizeof *o.order);
     o.cell = gnoi_malloc(context, b->count, sizeof *o.cell);
-    if (o.cell)
-        set_classes(&o);
     o.place = gnoi_calloc(context, o.cell_count, sizeof *o.place);
     if (o.order && o.cell && o.place && !gnoi_stopped(context)) {
+        if (b->count > 0)
+            set_extent(&o);
         set_cells(&o);
         set_order(&o);
     } else {
@@ -227,42 +223,54 @@ void gnoi_tree_free(gno_context *context, gnoi_tree *tree)
 
 /* ---- query ------------------------------------------------------------------------------------------------------ */
 
-static int list_room(gno_context *context, gnoi_list *list, size_t more)
+typedef struct walk {
+    const gnoi_tree *tree;
+    const gnoi_lbox *box;
+    gnoi_visit_fn visit;
+    void *user;
+} walk;
+
+static int walk_node(const walk *w, int level, uint32_t node)
 {
-    return list->count + more <= list->capacity ||
-           gnoi_reserve(context, (void **)&list->items, &list->capacity, list->count + more, sizeof *list->items);
+    unsigned mask = gnoi_eight_meet(&w->tree->nodes[w->tree->level_first[level] + node], w->box);
+    if (level == 0)
+        return mask == 0 || w->visit(w->user, node, mask);
+    for (; mask; mask &= mask - 1)
+        if (!walk_node(w, level - 1, node * GNOI_TREE_FAN + gnoi_lowest_bit(mask)))
+            return 0;
+    return 1;
+}
+
+int gnoi_tree_walk(const gnoi_tree *tree, const gnoi_lbox *box, gnoi_visit_fn visit, void *user)
+{
+    const walk w = {tree, box, visit, user};
+    return tree->levels == 0 || walk_node(&w, tree->levels - 1, 0);
 }
 
 /* One query: what is looked for, and where what is found goes. */
 typedef struct query {
     gno_context *context;
     const gnoi_tree *tree;
-    const gnoi_lbox *box;
     const gnoi_probe *probe;
     gnoi_list *found;
 } query;
 
-static int query_node(const query *q, int level, uint32_t node)
+static int list_found(void *user, uint32_t node, unsigned mask)
 {
-    unsigned mask = gnoi_eight_meet(&q->tree->nodes[q->tree->level_first[level] + node], q->box);
-    if (level == 0 && mask) {
-        if (q->probe && q->tree->leaves)
-            mask &= gnoi_leaf_mask(&q->tree->leaves[node], q->probe);
-        if (!list_room(q->context, q->found, GNOI_TREE_FAN))
-            return 0;
-    }
-    for (; mask; mask &= mask - 1) {
-        uint32_t child = node * GNOI_TREE_FAN + gnoi_lowest_bit(mask);
-        if (level == 0)
-            q->found->items[q->found->count++] = q->tree->caster[child];
-        else if (!query_node(q, level - 1, child))
-            return 0;
-    }
+    const query *q = user;
+    gnoi_list *found = q->found;
+    if (q->probe && q->tree->leaves)
+        mask &= gnoi_leaf_mask(&q->tree->leaves[node], q->probe);
+    if (found->count + GNOI_TREE_FAN > found->capacity &&
+        !gnoi_reserve(q->context, (void **)&found->items, &found->capacity, found->count + GNOI_TREE_FAN, sizeof *found->items))
+        return 0;
+    for (; mask; mask &= mask - 1)
+        found->items[found->count++] = q->tree->caster[node * GNOI_TREE_FAN + gnoi_lowest_bit(mask)];
     return 1;
 }
 
 int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_list *found)
 {
-    query q = {context, tree, box, probe, found};
-    return tree->levels == 0 || query_node(&q, tree->levels - 1, 0);
+    query q = {context, tree, probe, found};
+    return gnoi_tree_walk(tree, box, list_found, &q);
 }

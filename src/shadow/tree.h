@@ -97,6 +97,11 @@ typedef struct gnoi_list {
  * Returns 0 when memory fails. */
 int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox *box, const gnoi_probe *probe, gnoi_list *found);
 
+/* Visits every lowest node that holds entries whose boxes meet `box` and do not begin behind its farthest depth: bit k of mask is entry
+ * GNOI_TREE_FAN node + k. A visit that returns 0 is the last; then so does the walk. */
+typedef int (*gnoi_visit_fn)(void *user, uint32_t node, unsigned mask);
+int gnoi_tree_walk(const gnoi_tree *tree, const gnoi_lbox *box, gnoi_visit_fn visit, void *user);
+
 /* Up to 8 points whose hull contains the polygon: its outer corners, or a rectangle in its plane. Returns their number. */
 int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS]);
 

@@ -2,8 +2,11 @@
  *
  * Place in the data flow: prepared polygons -> their sides; vertices on the light's plane (located.h) -> boxes -> gnoi_tree_pack.
  */
+#include "base/fetch.h"
 #include "shadow/tree.h"
 #include <string.h>
+
+#define AHEAD 64 /* polygons: on another page, where the machine does not fetch them unasked */
 
 /* ---- boxes ------------------------------------------------------------------------------------------------------ */
 
@@ -143,6 +146,8 @@ static int tell_sides(const gno_scene *scene, const gnoi_lamp *lamp, const unsig
     const gnoi_prepared *prep = &scene->prepared;
     for (size_t i = 0; i < prep->poly_count + prep->cap_count; i++) {
         gnoi_caster_side side = side_of(scene, lamp, halved, &prep->polys[i]);
+        if (i + AHEAD < prep->poly_count)
+            FETCH(&prep->polys[i + AHEAD]);
         if (i >= prep->poly_count && side == GNOI_CASTS)
             side = GNOI_CASTS_NOT;
         if (side == GNOI_CASTS_NEAR)
