@@ -4,7 +4,8 @@
 #include "base/pages.h"
 #include <string.h>
 
-#define AHEAD 16 /* boxes */
+#define AHEAD 16      /* boxes */
+#define FAR_AHEAD 192 /* boxes: on another page, where the machine does not fetch them unasked */
 
 /* ---- order ------------------------------------------------------------------------------------------------------ */
 
@@ -97,8 +98,12 @@ static void set_cells(ordering *o)
     const float top = (float)((1 << bits) - 1), u_low = o->low[0], v_low = o->low[1], u_scale = o->scale[0], v_scale = o->scale[1];
     for (size_t i = 0; i < b->count; i++) {
         const gnoi_lbox *x = &b->box[i];
-        uint32_t u = quantise(x->u0 + x->u1, u_low, u_scale, top), v = quantise(x->v0 + x->v1, v_low, v_scale, top);
-        uint32_t cell = size_class(x, whole) << 2 * bits | hilbert(u, v, bits);
+        uint32_t u, v, cell;
+        if (i + FAR_AHEAD < b->count)
+            FETCH(x + FAR_AHEAD);
+        u = quantise(x->u0 + x->u1, u_low, u_scale, top);
+        v = quantise(x->v0 + x->v1, v_low, v_scale, top);
+        cell = size_class(x, whole) << 2 * bits | hilbert(u, v, bits);
         o->cell[i] = cell;
         o->place[cell]++;
     }
