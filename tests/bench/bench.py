@@ -15,7 +15,9 @@ WORK = os.path.join(OUT, "scenes")
 FULL_HD, UHD = (1920, 1080), (3840, 2160)
 
 # Settings of the peer: samples a pixel, or base:threshold@samples (that many where the base samples around a pixel span more).
-ALIKE, ADAPTIVE = ["1", "4", "16", "64"], ["1:.05@64", "1:.02@64", "4:.02@64", "4:.01@256"]
+ALIKE, ADAPTIVE = ["1", "4", "16", "64", "256"], ["1:.05@64", "1:.02@64", "4:.02@64", "4:.01@256"]
+# The slowest settings are run so often at most.
+SELDOM = {"16": 2, "64": 2, "256": 1, ADAPTIVE[-1]: 2}
 ALL_SCENES = ["room", "bunny", "sponza", "town-1k", "town-10k", "town-100k", "town-1m", "dragon"]
 TOWNS = {"town-1k": 1000, "town-10k": 10000, "town-100k": 100000, "town-1m": 1000000}
 GIVEN = {"room": "cornell", "bunny": "bunny", "dragon": "dragon"}
@@ -179,7 +181,7 @@ def measure(name, files, size, threads, settings, want_error):
     for i in range(REPEATS):  # one after the other, so that a busy moment meets all alike
         ours.append(gnomon_once(scene, size, threads, picture))
         for s in settings if PEER else []:
-            if s in ("64", "16", ADAPTIVE[-1]) and i >= 2:
+            if i >= SELDOM.get(s, REPEATS):
                 continue
             peer_picture = os.path.join(OUT, "peer.pfm") if i == 0 and against else None
             seconds, build = peer_once(view, size, threads, s, peer_picture)
