@@ -282,10 +282,11 @@ static size_t part_line(gnoi_tile *tile, int row, uint32_t line, size_t count)
 {
     const float dy = line_offset(tile, row, line);
     const int base = base_line_of(tile, row, line), may_speckle = !tile->veiled && !tile->tinted && !tile->job->textured;
+    size_t spans = 0;
     for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
         gnoi_piece *piece = &tile->lines.pieces[p];
         gnoi_brief *brief = &tile->briefs[piece->slot];
-        tile->spans++;
+        spans++;
         if (brief->speckled && may_speckle) {
             speckle(tile, row, piece, dy, base);
             continue;
@@ -295,6 +296,7 @@ static size_t part_line(gnoi_tile *tile, int row, uint32_t line, size_t count)
         piece->chain = brief->chain;
         brief->chain = p;
     }
+    tile->spans += (double)spans;
     return count;
 }
 
