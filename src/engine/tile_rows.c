@@ -339,15 +339,18 @@ VECTOR_CLONES static void add_times(float *restrict to, const float *restrict sh
 /* How much of each pixel a line leaves free: exact, for lengths are multiples of 2^-16. */
 static void find_gaps(const gnoi_tile *tile, const gnoi_line *line, float *gaps)
 {
+    uint32_t next = line->first;
     int32_t x = line->xa;
-    for (uint32_t p = line->first; x < line->xb; p = tile->lines.pieces[p].next) {
-        int32_t to = p ? tile->lines.pieces[p].x0 : line->xb;
+    while (x < line->xb) {
+        const gnoi_piece *piece = next ? &tile->lines.pieces[next] : NULL;
+        int32_t to = piece ? piece->x0 : line->xb;
         while (x < to) {
             int32_t end = (x | (GNOI_X_ONE - 1)) + 1 < to ? (x | (GNOI_X_ONE - 1)) + 1 : to;
             gaps[x / GNOI_X_ONE] += (float)(end - x) / GNOI_X_ONE;
             x = end;
         }
-        x = p ? tile->lines.pieces[p].x1 : line->xb;
+        x = piece ? piece->x1 : line->xb;
+        next = piece ? piece->next : 0;
     }
 }
 
