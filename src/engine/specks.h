@@ -11,7 +11,7 @@
 
 #define GNOI_SPECKS 512 /* at once; more of a row make it two */
 #define GNOI_SPECK_STEP 16 /* taken at once by vector code */
-#define GNOI_SPECK_LINES 4 /* = GNOI_BASE_LINES */
+#define GNOI_BASE_LINES 4  /* at most, where refinement is to judge by them */
 
 /* What is asked of a slot piece by piece, apart from all else so that many lie near at hand. */
 typedef struct gnoi_brief {
@@ -26,7 +26,7 @@ typedef struct gnoi_specks {
     uint32_t slot[GNOI_SPECKS + GNOI_SPECK_STEP], next[GNOI_SPECKS];
     int32_t pixel[GNOI_SPECKS + GNOI_SPECK_STEP];
     float length[GNOI_SPECKS + GNOI_SPECK_STEP], mx[GNOI_SPECKS + GNOI_SPECK_STEP], my[GNOI_SPECKS + GNOI_SPECK_STEP]; /* as in gnoi_cells */
-    float by_line[GNOI_SPECK_LINES][GNOI_SPECKS + GNOI_SPECK_STEP];
+    float by_line[GNOI_BASE_LINES][GNOI_SPECKS + GNOI_SPECK_STEP];
 } gnoi_specks;
 
 /* The speck of a slot in a pixel, new where there is none; there is room for one. */
@@ -43,7 +43,7 @@ static inline uint32_t gnoi_specks_seek(gnoi_specks *s, gnoi_brief *brief, uint3
     s->pixel[i] = pixel;
     s->next[i] = brief->speck;
     s->length[i] = s->mx[i] = s->my[i] = 0;
-    for (int l = 0; l < GNOI_SPECK_LINES; l++)
+    for (int l = 0; l < GNOI_BASE_LINES; l++)
         s->by_line[l][i] = 0;
     brief->speck = s->first + i;
     return i;

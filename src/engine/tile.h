@@ -56,7 +56,6 @@ typedef struct gnoi_frame_job {
 #define GNOI_TILE_ROWS (GNOI_TILE_H + 2)
 #define GNOI_TILE_PIXELS (GNOI_TILE_ROWS * GNOI_TILE_W)
 
-#define GNOI_BASE_LINES 4 /* at most, where refinement is to judge by them */
 
 /* The farthest right that a position on a line is kept apart. */
 #define GNOI_TILE_MOST ((GNOI_TILE_W + 1.0) * GNOI_X_ONE)

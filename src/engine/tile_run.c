@@ -42,12 +42,9 @@ INLINE void set_places(places *restrict p, const gnoi_cells *restrict cells, int
 INLINE void set_points(gnoi_batch *restrict b, int at, const places *restrict p, const common *restrict c, int orthographic)
 {
     const gnoi_screen_plane nearness = *c->nearness;
-    const vec3 right = c->view->right, up = c->view->up, forward = c->view->forward;
-    const double middle_x = 0.5 * c->view->width, middle_y = 0.5 * c->view->height, unit = c->view->unit;
+    const gnoi_view *restrict view = c->view;
     for (int i = 0; i < STEP; i++) {
-        double u = (p->x[i] - middle_x) * unit, v = (p->y[i] - middle_y) * unit, z = gnoi_plane_at(&nearness, p->x[i], p->y[i]);
-        vec3 q = v3_sub(v3_scale(right, u), v3_scale(up, v));
-        q = orthographic ? v3_mad(q, forward, -z) : v3_scale(v3_add(q, forward), 1 / z);
+        vec3 q = gnoi_view_offset(view, orthographic, p->x[i], p->y[i], gnoi_plane_at(&nearness, p->x[i], p->y[i]));
         b->px[at + i] = (float)q.x;
         b->py[at + i] = (float)q.y;
         b->pz[at + i] = (float)q.z;
@@ -59,7 +56,7 @@ INLINE void set_normals(gnoi_batch *restrict b, int at, const places *restrict p
     const gnoi_screen_plane f[3] = {normal[0], normal[1], normal[2]};
     for (int i = 0; i < STEP; i++) {
         vec3 n = v3(gnoi_plane_at(&f[0], p->x[i], p->y[i]), gnoi_plane_at(&f[1], p->x[i], p->y[i]), gnoi_plane_at(&f[2], p->x[i], p->y[i]));
-        n = v3_scale(n, (v3_dot(n, g) < 0 ? -1.0 : 1.0) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
+        n = gnoi_interp_facing(n, g);
         b->nx[at + i] = (float)n.x;
         b->ny[at + i] = (float)n.y;
         b->nz[at + i] = (float)n.z;
@@ -135,11 +132,9 @@ static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int f
 static vec3 unit_normal(const common *c, double x, double y)
 {
     const gnoi_screen_plane *f = c->normal;
-    vec3 n;
     if (!f)
         return c->g;
-    n = v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y));
-    return v3_unit(v3_scale(n, (v3_dot(n, c->g) < 0 ? -1 : 1) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300)));
+    return v3_unit(gnoi_interp_facing(v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y)), c->g));
 }
 
 static void set_bumps(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, const places *p, int at)

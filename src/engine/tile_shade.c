@@ -228,9 +228,7 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
 
 static void set_point(gnoi_batch *b, int i, const gnoi_view *view, const gnoi_screen_plane *nearness, double x, double y)
 {
-    double u = (x - 0.5 * view->width) * view->unit, v = (y - 0.5 * view->height) * view->unit, z = gnoi_plane_at(nearness, x, y);
-    vec3 p = v3_sub(v3_scale(view->right, u), v3_scale(view->up, v));
-    p = view->orthographic ? v3_mad(p, view->forward, -z) : v3_scale(v3_add(p, view->forward), 1 / z);
+    vec3 p = gnoi_view_offset(view, view->orthographic, x, y, gnoi_plane_at(nearness, x, y));
     b->px[i] = (float)p.x;
     b->py[i] = (float)p.y;
     b->pz[i] = (float)p.z;
@@ -244,9 +242,7 @@ void gnoi_tile_set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int 
     if (slot->receiver.poly->shading == GNO_SHADING_PHONG) {
         const gnoi_screen_plane *f = slot->interp.normal;
         gnoi_interp_seek(&slot->interp, job->scene, &job->view, slot->receiver.poly, x, y);
-        n = v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y));
-        /* Near unit length on the viewer's side; the batch makes it unit. */
-        n = v3_scale(n, (v3_dot(n, g) < 0 ? -1 : 1) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
+        n = gnoi_interp_facing(v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y)), g);
     }
     if (job->tones[slot->receiver.poly->material].bumped)
         n = gnoi_tile_bumped(tile, slot, row, column, x, y, slot->receiver.poly->shading == GNO_SHADING_PHONG ? v3_unit(n) : n);

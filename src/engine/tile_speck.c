@@ -112,12 +112,8 @@ INLINE double at(const double plane[3][STEP], const places *p, int i) { return p
 INLINE void set_points(gnoi_batch *restrict b, int to, const places *restrict p, const facets *restrict f, const gnoi_view *restrict view,
                        int orthographic)
 {
-    const vec3 right = view->right, up = view->up, forward = view->forward;
-    const double middle_x = 0.5 * view->width, middle_y = 0.5 * view->height, unit = view->unit;
     for (int i = 0; i < STEP; i++) {
-        double u = (p->x[i] - middle_x) * unit, v = (p->y[i] - middle_y) * unit, z = at(f->plane[0], p, i);
-        vec3 q = v3_sub(v3_scale(right, u), v3_scale(up, v));
-        q = orthographic ? v3_mad(q, forward, -z) : v3_scale(v3_add(q, forward), 1 / z);
+        vec3 q = gnoi_view_offset(view, orthographic, p->x[i], p->y[i], at(f->plane[0], p, i));
         b->px[to + i] = (float)q.x;
         b->py[to + i] = (float)q.y;
         b->pz[to + i] = (float)q.z;
@@ -128,7 +124,7 @@ INLINE void set_normals(gnoi_batch *restrict b, int to, const places *restrict p
 {
     for (int i = 0; i < STEP; i++) {
         vec3 n = v3(at(f->plane[1], p, i), at(f->plane[2], p, i), at(f->plane[3], p, i)), g = v3(f->g[0][i], f->g[1][i], f->g[2][i]);
-        n = v3_scale(n, (v3_dot(n, g) < 0 ? -1.0 : 1.0) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
+        n = gnoi_interp_facing(n, g);
         b->nx[to + i] = (float)n.x;
         b->ny[to + i] = (float)n.y;
         b->nz[to + i] = (float)n.z;
@@ -138,22 +134,25 @@ INLINE void set_normals(gnoi_batch *restrict b, int to, const places *restrict p
     }
 }
 
-VECTOR_CLONES static void set_near(gnoi_batch *restrict b, int to, const gnoi_specks *restrict s, uint32_t from, double x0, double y0,
-                                   const facets *restrict f, const gnoi_view *restrict view)
+INLINE void set_samples(gnoi_batch *restrict b, int to, const gnoi_specks *restrict s, uint32_t from, double x0, double y0,
+                        const facets *restrict f, const gnoi_view *restrict view, int orthographic)
 {
     places p;
     set_places(&p, s, from, x0, y0);
-    set_points(b, to, &p, f, view, 0);
+    set_points(b, to, &p, f, view, orthographic);
     set_normals(b, to, &p, f);
+}
+
+VECTOR_CLONES static void set_near(gnoi_batch *restrict b, int to, const gnoi_specks *restrict s, uint32_t from, double x0, double y0,
+                                   const facets *restrict f, const gnoi_view *restrict view)
+{
+    set_samples(b, to, s, from, x0, y0, f, view, 0);
 }
 
 VECTOR_CLONES static void set_far(gnoi_batch *restrict b, int to, const gnoi_specks *restrict s, uint32_t from, double x0, double y0,
                                   const facets *restrict f, const gnoi_view *restrict view)
 {
-    places p;
-    set_places(&p, s, from, x0, y0);
-    set_points(b, to, &p, f, view, 1);
-    set_normals(b, to, &p, f);
+    set_samples(b, to, s, from, x0, y0, f, view, 1);
 }
 
 static void set_material(gnoi_tile *tile, int to, uint32_t from, int count)
@@ -202,7 +201,7 @@ static int set_cell(gnoi_tile *tile, uint32_t i)
     tile->cells.length[pixel] = s->length[i];
     tile->cells.mx[pixel] = s->mx[i];
     tile->cells.my[pixel] = s->my[i];
-    for (int l = 0; l < GNOI_SPECK_LINES; l++)
+    for (int l = 0; l < GNOI_BASE_LINES; l++)
         tile->cells.by_line[l][pixel] = s->by_line[l][i];
     return pixel;
 }
@@ -231,7 +230,7 @@ static void sample_bending(gnoi_tile *tile, int row)
         s->length[n] = s->length[i];
         s->mx[n] = s->mx[i];
         s->my[n] = s->my[i];
-        for (int l = 0; l < GNOI_SPECK_LINES; l++)
+        for (int l = 0; l < GNOI_BASE_LINES; l++)
             s->by_line[l][n] = s->by_line[l][i];
         n++;
     }

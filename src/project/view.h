@@ -65,14 +65,19 @@ static inline gnoi_screen_plane gnoi_view_nearness(const gnoi_view *view, const 
     return p;
 }
 
-/* The scene point seen at picture point (x,y) with nearness z (z > 0 for a perspective view). */
-static inline vec3 gnoi_view_point(const gnoi_view *view, double x, double y, double z)
+/* From the eye to the scene point seen at picture point (x,y) with nearness z (z > 0 for a perspective view). orthographic: the view's, a
+ * constant in loops that are to become vector code. */
+static inline vec3 gnoi_view_offset(const gnoi_view *view, int orthographic, double x, double y, double z)
 {
     double u = (x - 0.5 * view->width) * view->unit, v = (y - 0.5 * view->height) * view->unit;
     vec3 across = v3_sub(v3_scale(view->right, u), v3_scale(view->up, v));
-    if (view->orthographic)
-        return v3_add(v3_mad(view->eye, view->forward, -z), across);
-    return v3_mad(view->eye, v3_add(view->forward, across), 1 / z);
+    return orthographic ? v3_mad(across, view->forward, -z) : v3_scale(v3_add(across, view->forward), 1 / z);
+}
+
+/* That scene point. */
+static inline vec3 gnoi_view_point(const gnoi_view *view, double x, double y, double z)
+{
+    return v3_add(view->eye, gnoi_view_offset(view, view->orthographic, x, y, z));
 }
 
 #endif

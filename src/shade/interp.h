@@ -22,6 +22,12 @@ typedef struct gnoi_interp {
     float turn;                        /* the angle by which it turns from a pixel to the next, squared: a bound, at the first corner */
 } gnoi_interp;
 
+/* An interpolated normal n on the viewer's side of the plane, where its own normal g is; near unit length. */
+static inline vec3 gnoi_interp_facing(vec3 n, vec3 g)
+{
+    return v3_scale(n, (v3_dot(n, g) < 0 ? -1.0 : 1.0) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
+}
+
 /* Makes `interp` valid for picture point (x,y) of `poly`: picks the triangle that holds it, or the nearest. */
 void gnoi_interp_seek(gnoi_interp *interp, const gno_scene *scene, const gnoi_view *view, const gnoi_poly *poly, double x, double y);
 

@@ -1,5 +1,6 @@
 /* packet_points.c -- polygons as a few points whose hull holds them: see packet.h. */
 #include "shadow/packet.h"
+#include "shadow/tree.h"
 
 /* Around once: the first edge's direction is passed upwards once only. */
 int gnoi_poly_is_convex(const gno_scene *scene, const gnoi_poly *poly)
@@ -28,8 +29,7 @@ int gnoi_poly_is_convex(const gno_scene *scene, const gnoi_poly *poly)
 static void bounding_rectangle(const gnoi_prepared *prep, const gnoi_poly *poly, vec3 points[4])
 {
     uint32_t first = poly->corner, end = prep->ring_corner[poly->ring + 1];
-    vec3 n = v3_from(poly->n), origin = v3_from(prep->positions[prep->corner_vertex[first]]), e1, e2;
-    double lo[2] = {0, 0}, hi[2] = {0, 0};
+    vec3 n = v3_from(poly->n), origin = v3_from(prep->positions[prep->corner_vertex[first]]), e1;
     e1 = v3_unit(v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0)));
     for (uint32_t i = first + 1; i < end; i++) {
         vec3 edge = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
@@ -39,19 +39,7 @@ static void bounding_rectangle(const gnoi_prepared *prep, const gnoi_poly *poly,
             break;
         }
     }
-    e2 = v3_cross(n, e1);
-    for (uint32_t i = first; i < end; i++) {
-        vec3 q = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
-        double s = v3_dot(q, e1), t = v3_dot(q, e2);
-        lo[0] = s < lo[0] ? s : lo[0];
-        hi[0] = s > hi[0] ? s : hi[0];
-        lo[1] = t < lo[1] ? t : lo[1];
-        hi[1] = t > hi[1] ? t : hi[1];
-    }
-    points[0] = v3_mad(v3_mad(origin, e1, lo[0]), e2, lo[1]);
-    points[1] = v3_mad(v3_mad(origin, e1, hi[0]), e2, lo[1]);
-    points[2] = v3_mad(v3_mad(origin, e1, hi[0]), e2, hi[1]);
-    points[3] = v3_mad(v3_mad(origin, e1, lo[0]), e2, hi[1]);
+    gnoi_poly_rectangle(prep, poly, e1, points);
 }
 
 int gnoi_poly_points_again(const gno_scene *scene, const gnoi_poly *poly, int exact, vec3 points[GNOI_PACKET_CORNERS])

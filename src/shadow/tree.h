@@ -102,6 +102,9 @@ int gnoi_tree_query(gno_context *context, const gnoi_tree *tree, const gnoi_lbox
 typedef int (*gnoi_visit_fn)(void *user, uint32_t node, unsigned mask);
 int gnoi_tree_walk(const gnoi_tree *tree, const gnoi_lbox *box, gnoi_visit_fn visit, void *user);
 
+/* The rectangle around a polygon's outer corners in its plane, whose sides run along the unit vector e1 and across it. */
+void gnoi_poly_rectangle(const gnoi_prepared *prep, const gnoi_poly *poly, vec3 e1, vec3 points[4]);
+
 /* Up to 8 points whose hull contains the polygon: its outer corners, or a rectangle in its plane. Returns their number. */
 int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS]);
 

@@ -28,20 +28,11 @@ void gnoi_boxes_free(gnoi_boxes *b)
     gnoi_free(b->context, b->number, b->number_capacity, sizeof *b->number);
 }
 
-int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS])
+void gnoi_poly_rectangle(const gnoi_prepared *prep, const gnoi_poly *poly, vec3 e1, vec3 points[4])
 {
-    const gnoi_prepared *prep = &scene->prepared;
     uint32_t first = poly->corner, end = prep->ring_corner[poly->ring + 1];
-    vec3 n = v3_from(poly->n), origin, e1, e2;
+    vec3 origin = v3_from(prep->positions[prep->corner_vertex[first]]), e2 = v3_cross(v3_from(poly->n), e1);
     double lo[2] = {0, 0}, hi[2] = {0, 0};
-    if (end - first <= GNOI_FRAME_POINTS) {
-        for (uint32_t i = first; i < end; i++)
-            points[i - first] = v3_from(prep->positions[prep->corner_vertex[i]]);
-        return (int)(end - first);
-    }
-    origin = v3_from(prep->positions[prep->corner_vertex[first]]);
-    e1 = v3_unit(v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0)));
-    e2 = v3_cross(n, e1);
     for (uint32_t i = first; i < end; i++) {
         vec3 q = v3_sub(v3_from(prep->positions[prep->corner_vertex[i]]), origin);
         double s = v3_dot(q, e1), t = v3_dot(q, e2);
@@ -54,6 +45,19 @@ int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GN
     points[1] = v3_mad(v3_mad(origin, e1, hi[0]), e2, lo[1]);
     points[2] = v3_mad(v3_mad(origin, e1, hi[0]), e2, hi[1]);
     points[3] = v3_mad(v3_mad(origin, e1, lo[0]), e2, hi[1]);
+}
+
+int gnoi_poly_hull(const gno_scene *scene, const gnoi_poly *poly, vec3 points[GNOI_FRAME_POINTS])
+{
+    const gnoi_prepared *prep = &scene->prepared;
+    uint32_t first = poly->corner, end = prep->ring_corner[poly->ring + 1];
+    vec3 n = v3_from(poly->n);
+    if (end - first <= GNOI_FRAME_POINTS) {
+        for (uint32_t i = first; i < end; i++)
+            points[i - first] = v3_from(prep->positions[prep->corner_vertex[i]]);
+        return (int)(end - first);
+    }
+    gnoi_poly_rectangle(prep, poly, v3_unit(v3_cross(n, fabs(n.x) < 0.6 ? v3(1, 0, 0) : v3(0, 1, 0))), points);
     return 4;
 }
 
