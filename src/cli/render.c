@@ -24,8 +24,8 @@ static const option options[] = {
     [FRAMES] = {"frames", 0, "A:B", "frames of the scene's camera.path: A to B, one, or all; several need\n"
                                     "a number in FILE, such as out_%04d.png, which alone means all"},
     [SIZE] = {"size", 0, "WxH", "pixels, instead of the scene's"},
-    [LINES] = {"lines", 0, "N or B:N", "sample lines per pixel row: N everywhere, or B and N where the\n"
-                                       "picture varies (N an odd multiple of B)"},
+    [LINES] = {"lines", 0, "N or B:N", "sample lines per pixel row: N everywhere, or B and up to N where\n"
+                                       "the picture varies (N an odd multiple of B)"},
     [THREADS] = {"threads", 0, "N", "0, the default: one per processor; the picture is the same"},
     [EXPOSURE] = {"exposure", 0, "X", "factor on all values of the picture (1)"},
     [DEPTH] = {"depth", 0, "BITS", "8 or 16 for PNG (8), 16 or 32 for EXR (16), 32 for PFM"},
