@@ -141,10 +141,11 @@ static int middle_lines(const gno_render_def *def)
 }
 
 /* Marks the pixels of a row whose colour bends from line to line by more than the def allows: where it changes evenly the lines'
- * mean is right already. The lines next to the pixel's own, above and below, take part. */
-static void mark_bends(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W])
+ * mean is right already. The lines next to the pixel's own, above and below, take part. Returns how many. */
+static int mark_row(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W])
 {
     int n = tile->job->def.base_lines, i = row * GNOI_TILE_W, middle = middle_lines(&tile->job->def);
+    int count = 0;
     float limit = (float)tile->job->def.refine_above, largest[GNOI_TILE_W] = {0};
     for (int k = 0; k < 3; k++) {
         const float *a = &tile->line_acc[n - 1][k][i - GNOI_TILE_W], *b = &tile->line_acc[0][k][i];
@@ -155,22 +156,41 @@ static void mark_bends(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W])
             b = c;
         }
     }
-    for (int x = 0; x < GNOI_TILE_W; x++) {
+    for (int x = 0; x < tile->width; x++) {
         needs[x].from = n;
         needs[x].to = tile->thin[i + x] || largest[x] > MIDDLE_BEND * limit ? tile->job->def.lines : largest[x] > limit ? middle : 0;
+        count += needs[x].to > 0;
     }
+    return count;
 }
 
-static void mark_for_layers(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W])
+/* Where more than this share of a tile bends, it is full of things as small as the lines are apart, and those that lie between two base
+ * lines are many: then all its pixels get all lines. */
+#define CROWDED (1.0 / 3)
+
+static void mark_bends(const gnoi_tile *tile, need needs[][GNOI_TILE_W])
 {
-    for (int x = 0; x < tile->width; x++) {
-        needs[x].from = (int)tile->weight[row * GNOI_TILE_W + x];
-        needs[x].to = gnoi_tile_layers_need(tile, row * GNOI_TILE_W + x) ? tile->job->def.lines : 0;
-    }
+    int count = 0;
+    for (int row = 1; row <= tile->height; row++)
+        count += mark_row(tile, row, needs[row]);
+    if (count <= CROWDED * tile->width * tile->height)
+        return;
+    for (int row = 1; row <= tile->height; row++)
+        for (int x = 0; x < tile->width; x++)
+            needs[row][x].to = tile->job->def.lines;
 }
 
-/* Marks which pixels of a row need more lines. */
-typedef void (*mark_needs)(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W]);
+static void mark_for_layers(const gnoi_tile *tile, need needs[][GNOI_TILE_W])
+{
+    for (int row = 1; row <= tile->height; row++)
+        for (int x = 0; x < tile->width; x++) {
+            needs[row][x].from = (int)tile->weight[row * GNOI_TILE_W + x];
+            needs[row][x].to = gnoi_tile_layers_need(tile, row * GNOI_TILE_W + x) ? tile->job->def.lines : 0;
+        }
+}
+
+/* Marks which pixels need more lines, in rows 1 to the tile's height. */
+typedef void (*mark_needs)(const gnoi_tile *tile, need needs[][GNOI_TILE_W]);
 
 /* Neighbouring pixels that get the same lines. */
 typedef struct run {
@@ -179,11 +199,9 @@ typedef struct run {
 } run;
 
 /* Runs of pixels of a row that need more lines; returns how many. */
-static int find_runs(const gnoi_tile *tile, int row, mark_needs mark, run runs[GNOI_TILE_W])
+static int find_runs(const gnoi_tile *tile, const need needs[GNOI_TILE_W], run runs[GNOI_TILE_W])
 {
-    need needs[GNOI_TILE_W];
     int n = 0;
-    mark(tile, row, needs);
     for (int x = 0; x < tile->width; x++) {
         if (!needs[x].to)
             continue;
@@ -216,6 +234,8 @@ static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_co
 /* Adds lines where they are needed; returns 0 when they are nowhere. */
 static int plan_refinement(gnoi_tile *tile, mark_needs mark)
 {
+    need needs[GNOI_TILE_H + 1][GNOI_TILE_W];
+    mark(tile, needs);
     gnoi_lines_reset(&tile->lines);
     tile->strip_count = 0;
     for (int row = 0; row < tile->height + 2; row++) {
@@ -223,7 +243,7 @@ static int plan_refinement(gnoi_tile *tile, mark_needs mark)
         tile->row_line[row] = (uint32_t)tile->lines.line_count;
         tile->row_strip[row] = tile->strip_count;
         if (row > 0 && row <= tile->height)
-            add_fine_lines(tile, row, runs, find_runs(tile, row, mark, runs));
+            add_fine_lines(tile, row, runs, find_runs(tile, needs[row], runs));
         tile->row_strip_end[row] = tile->strip_count;
     }
     tile->row_line[tile->height + 2] = (uint32_t)tile->lines.line_count;

@@ -43,16 +43,39 @@ static void destroy(gno_scene *scene, gno_context *context)
     gno_context_destroy(context);
 }
 
-/* A square about the origin, turned a little, in n x n cells of two triangles each; white, with a highlight. */
+/* White polygons of so many corners each, with a highlight. */
+static void add_polygons(gno_scene *scene, gno_shading shading, const double *positions, size_t vertex_count, const int *corners, size_t count, size_t each)
+{
+    unsigned *rings = malloc((count + 1) * sizeof *rings);
+    gno_mesh_def mesh = gno_mesh_def_default();
+    gno_material m = gno_material_default();
+    assert_non_null(rings);
+    for (size_t i = 0; i <= count; i++)
+        rings[i] = (unsigned)(each * i);
+    for (int k = 0; k < 3; k++) {
+        m.diffuse[k] = 0.6;
+        m.specular[k] = 0.3;
+    }
+    m.shininess = 20;
+    m.shading = shading;
+    assert_int_equal(gno_scene_add_material(scene, &m, &mesh.material), GNO_OK);
+    mesh.vertex_count = vertex_count;
+    mesh.positions = positions;
+    mesh.polygon_count = mesh.ring_count = count;
+    mesh.corner_count = each * count;
+    mesh.ring_start = rings;
+    mesh.corner_vertex = corners;
+    assert_int_equal(gno_scene_add_mesh(scene, &mesh, NULL), GNO_OK);
+    free(rings);
+}
+
+/* A square about the origin, turned a little, in n x n cells of two triangles each. */
 static void add_square(gno_scene *scene, double half, int n, gno_shading shading)
 {
     const size_t across = (size_t)n + 1, cells = (size_t)n * (size_t)n;
     double *p = malloc(3 * across * across * sizeof *p);
     int *corners = malloc(6 * cells * sizeof *corners), *next = corners;
-    unsigned *rings = malloc((2 * cells + 1) * sizeof *rings);
-    gno_mesh_def mesh = gno_mesh_def_default();
-    gno_material m = gno_material_default();
-    assert_true(p && corners && rings);
+    assert_true(p && corners);
     for (size_t i = 0; i < across * across; i++) {
         double x = half * (2.0 * (double)(i % across) / n - 1), y = half * (2.0 * (double)(i / across) / n - 1);
         p[3 * i] = x - 0.2 * y;
@@ -64,25 +87,9 @@ static void add_square(gno_scene *scene, double half, int n, gno_shading shading
         memcpy(next, square, sizeof square);
         next += 6;
     }
-    for (size_t i = 0; i <= 2 * cells; i++)
-        rings[i] = (unsigned)(3 * i);
-    for (int k = 0; k < 3; k++) {
-        m.diffuse[k] = 0.6;
-        m.specular[k] = 0.3;
-    }
-    m.shininess = 20;
-    m.shading = shading;
-    assert_int_equal(gno_scene_add_material(scene, &m, &mesh.material), GNO_OK);
-    mesh.vertex_count = across * across;
-    mesh.positions = p;
-    mesh.polygon_count = mesh.ring_count = 2 * cells;
-    mesh.corner_count = 6 * cells;
-    mesh.ring_start = rings;
-    mesh.corner_vertex = corners;
-    assert_int_equal(gno_scene_add_mesh(scene, &mesh, NULL), GNO_OK);
+    add_polygons(scene, shading, p, across * across, corners, 2 * cells, 3);
     free(p);
     free(corners);
-    free(rings);
 }
 
 static void add_lights(gno_scene *scene)
@@ -175,12 +182,62 @@ static void test_middle_lines(void **state)
     assert_false(same_as(40.0 * how.refine_above, 6));
 }
 
+/* A bar in every pixel, seven tenths wide and three tenths high: in one of `every` it meets a base line (at a quarter of the pixel),
+ * in the others it lies between the two. */
+static void add_bars(gno_scene *scene, int every)
+{
+    static double p[4 * WIDTH * HEIGHT][3];
+    static int corners[4 * WIDTH * HEIGHT];
+    for (int i = 0; i < 4 * WIDTH * HEIGHT; i++) {
+        const int x = i / 4 % WIDTH, y = i / 4 / WIDTH, right = i % 4 == 1 || i % 4 == 2, up = i % 4 >= 2;
+        p[i][0] = x - WIDTH / 2 + (right ? 0.85 : 0.15);
+        p[i][1] = y - HEIGHT / 2 + ((x + y) % every == 0 ? 0.1 : 0.35) + (up ? 0.3 : 0);
+        p[i][2] = 0;
+        corners[i] = i;
+    }
+    add_polygons(scene, GNO_SHADING_FLAT, &p[0][0], 4 * WIDTH * HEIGHT, corners, WIDTH * HEIGHT, 4);
+}
+
+/* Pixels that got more lines, and the largest difference to the picture with all lines everywhere. */
+static float of_bars(int every, double *refined)
+{
+    static float rgb[2][VALUES];
+    gno_context *context;
+    gno_scene *scene = empty(&context, 0.5);
+    gno_render_def how = gno_render_def_default();
+    gno_stats stats;
+    float most = 0;
+    add_bars(scene, every);
+    assert_int_equal(gno_render(scene, &how, rgb[0], &stats), GNO_OK);
+    how.base_lines = how.lines;
+    assert_int_equal(gno_render(scene, &how, rgb[1], NULL), GNO_OK);
+    destroy(scene, context);
+    for (size_t i = 0; i < VALUES; i++) {
+        float d = rgb[0][i] > rgb[1][i] ? rgb[0][i] - rgb[1][i] : rgb[1][i] - rgb[0][i];
+        most = d > most ? d : most;
+    }
+    *refined = (double)stats.refined_pixels;
+    return most;
+}
+
+/* Where many pixels call for more lines their neighbours get them too. */
+static void test_crowded_tiles(void **state)
+{
+    double refined;
+    (void)state;
+    assert_true(of_bars(4, &refined) < 1e-5f);
+    assert_true(refined == (double)WIDTH * HEIGHT);
+    assert_true(of_bars(40, &refined) > 0.02f);
+    assert_true(refined < 0.3 * WIDTH * HEIGHT);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_even_surfaces),
         cmocka_unit_test(test_small_triangles),
         cmocka_unit_test(test_middle_lines),
+        cmocka_unit_test(test_crowded_tiles),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
