@@ -11,6 +11,29 @@
  * far out of the picture they are not judged by it closely anyway. */
 #define BOUND_SLACK 0.02f
 
+/* The bin as the tile's order to be. What making the items reads is asked for here, in the bin's order, which is the memory's: nearest first
+ * it would be met in any order. */
+static void copy_bin(gnoi_tile *tile, const gnoi_keyed *bin, size_t count)
+{
+    const gnoi_prepared *prep = &tile->job->scene->prepared;
+    const gnoi_vertex *vertices = tile->job->bins.vertices;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t corner = prep->chunk_corner[bin[i].value / GNOI_CHUNK];
+        FETCH(&prep->polys[bin[i].value]);
+        if (corner != GNOI_NONE)
+            FETCH(&prep->corner_vertex[corner + 3 * (bin[i].value % GNOI_CHUNK)]);
+        tile->order[i] = bin[i];
+    }
+    tile->opaque_count = 0;
+    for (size_t i = 0; i < count; i++) {
+        uint32_t corner_count;
+        const uint32_t *vertex = gnoi_corners_of(prep, bin[i].value, &corner_count);
+        for (int k = 0; k < 3; k++)
+            FETCH(&vertices[vertex[k]]);
+        tile->opaque_count += !(bin[i].key & GNOI_KEY_SEE_THROUGH);
+    }
+}
+
 void gnoi_tile_sort(gnoi_tile *tile, const gnoi_keyed *bin, size_t count)
 {
     gno_context *context = tile->lines.context;
@@ -21,11 +44,7 @@ void gnoi_tile_sort(gnoi_tile *tile, const gnoi_keyed *bin, size_t count)
         tile->failed = 1;
         return;
     }
-    tile->opaque_count = 0;
-    for (size_t i = 0; i < count; i++) {
-        tile->order[i] = bin[i];
-        tile->opaque_count += !(bin[i].key & GNOI_KEY_SEE_THROUGH);
-    }
+    copy_bin(tile, bin, count);
     tile->made[1] = tile->opaque_count;
     gnoi_sort(tile->order, tile->order_scratch, count);
 }
@@ -78,20 +97,6 @@ static void set_triangle_item(const gnoi_tile *tile, const gnoi_poly *poly, unsi
     set_bounds(tile, poly, l->x0[lane], l->x1[lane], l->y0[lane], l->y1[lane], item);
 }
 
-/* Polygons come in no order that memory knows: those of the items from `from` on are asked for before they are needed. */
-static void fetch_ahead(const gnoi_tile *tile, size_t from)
-{
-    const gnoi_prepared *prep = &tile->job->scene->prepared;
-    size_t middle = from + GNOI_LANES, end = middle + GNOI_LANES;
-    for (size_t i = from; i < end && i < tile->opaque_count; i++) {
-        const gnoi_poly *poly = &prep->polys[tile->order[i].value];
-        if (i < middle)
-            FETCH(&prep->corner_vertex[poly->corner]);
-        else
-            FETCH(poly);
-    }
-}
-
 /* Makes the items [first, first + count) of the order. */
 static void make_items(gnoi_tile *tile, size_t first, size_t count)
 {
@@ -99,7 +104,6 @@ static void make_items(gnoi_tile *tile, size_t first, size_t count)
     uint32_t index[GNOI_LANES];
     for (size_t i = 0; i < count; i++)
         index[i] = tile->order[first + i].value;
-    fetch_ahead(tile, first + GNOI_LANES);
     gnoi_lanes_load(&tile->lanes, prep, &tile->job->bins, index, (unsigned)count);
     gnoi_lanes_bound(&tile->lanes);
     for (size_t i = 0; i < count; i++) {
