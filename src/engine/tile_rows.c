@@ -354,6 +354,20 @@ static void find_gaps(const gnoi_tile *tile, const gnoi_line *line, float *gaps)
     }
 }
 
+/* Counts the row's lines over each pixel. */
+static void add_weights(gnoi_tile *tile, int row)
+{
+    const uint32_t row_first = tile->row_line[row], row_end = tile->row_line[row + 1];
+    float *weight = &tile->weight[row * GNOI_TILE_W];
+    for (int s = tile->row_strip[row]; s < tile->row_strip_end[row]; s++) {
+        const gnoi_strip *strip = &tile->strips[s];
+        const uint32_t first = strip->first > row_first ? strip->first : row_first;
+        const uint32_t end = strip->first + strip->count < row_end ? strip->first + strip->count : row_end;
+        for (int p = (int)strip->xa; p < (int)strip->xb; p++)
+            weight[p] += (float)(end - first);
+    }
+}
+
 /* What the row's lines leave free shows the background. */
 static void add_background(gnoi_tile *tile, int row)
 {
@@ -365,15 +379,15 @@ static void add_background(gnoi_tile *tile, int row)
         gnoi_tile_veiled_background(tile, row);
         return;
     }
+    add_weights(tile, row);
     for (uint32_t line = tile->row_line[row]; line < tile->row_line[row + 1]; line++) {
         const gnoi_line *l = &tile->lines.lines[line];
         const int first = l->xa / GNOI_X_ONE, end = l->xb / GNOI_X_ONE;
-        float gaps[GNOI_TILE_W] = {0};
-        for (int p = first; p < end; p++)
-            tile->weight[index + p] += 1;
+        float gaps[GNOI_TILE_W];
         if (l->uncovered == 0)
             continue;
         open = 1;
+        memset(gaps, 0, sizeof gaps);
         find_gaps(tile, l, gaps);
         for (int p = first; p < end; p++)
             rest[p] += gaps[p];

@@ -29,17 +29,47 @@ static inline float even_factor(float mean, float texel)
 /* ---- into the picture --------------------------------------------------------------------------------------------- */
 
 /* `judged`: the colour by which pixels are judged, rgb itself unless the surface is textured. A texture changes from row to row,
- * but is filtered already: that calls for no finer lines. */
-static void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], const float judged[3], float coverage, const float *by_line,
-                       size_t stride)
+ * but is filtered already: that calls for no finer lines. share: of each base line, the lines `stride` apart. */
+static inline void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], const float judged[3], int lines, const float *share,
+                              size_t stride)
 {
-    int lines = tile->judging ? tile->job->def.base_lines : 0;
     for (int k = 0; k < 3; k++)
         tile->acc[k][pixel] += rgb[k];
-    for (int i = 0; i < lines; i++) {
-        float share = by_line[(size_t)i * stride] / coverage;
-        for (int k = 0; k < 3 && share > 0; k++)
-            tile->line_acc[i][k][pixel] += share * judged[k];
+    for (int i = 0; i < lines; i++)
+        for (int k = 0; k < 3; k++)
+            tile->line_acc[i][k][pixel] += share[(size_t)i * stride] * judged[k];
+}
+
+static int judged_lines(const gnoi_tile *tile) { return tile->judging ? tile->job->def.base_lines : 0; }
+
+/* Lengths on one line to shares of all. */
+VECTOR_CLONES static void divide(float *restrict length, const float *restrict all, int count)
+{
+    for (int i = 0; i < count; i++)
+        length[i] /= all[i];
+}
+
+/* The batch's colours into the picture. */
+static void add_batch(gnoi_tile *tile)
+{
+    const gnoi_batch *b = &tile->batch;
+    const int lines = judged_lines(tile);
+    for (int i = 0; i < lines; i++)
+        divide(tile->cover_by_line[i], b->coverage, b->count);
+    for (int i = 0; i < b->count; i++) {
+        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]}, judged[3] = {rgb[0], rgb[1], rgb[2]};
+        for (int k = 0; k < 3 && tile->job->textured; k++)
+            judged[k] = rgb[k] * tile->even[k][i];
+        add_colour(tile, b->tag[i], rgb, judged, lines, &tile->cover_by_line[0][i], GNOI_BATCH);
+    }
+}
+
+static void add_tinted_batch(gnoi_tile *tile)
+{
+    const gnoi_batch *b = &tile->batch;
+    for (int i = 0; i < b->count; i++) {
+        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]};
+        gnoi_tile_add_shares(tile, b->tag[i], rgb, &tile->share_by_line[0][0][i], GNOI_BATCH);
     }
 }
 
@@ -82,15 +112,10 @@ void gnoi_tile_flush(gnoi_tile *tile)
     if (tile->job->textured)
         apply_texels(tile);
     gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
-    for (int i = 0; i < b->count; i++) {
-        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]}, judged[3];
-        for (int k = 0; k < 3 && tile->job->textured; k++)
-            judged[k] = rgb[k] * tile->even[k][i];
-        if (tile->tinted)
-            gnoi_tile_add_shares(tile, b->tag[i], rgb, &tile->share_by_line[0][0][i], GNOI_BATCH);
-        else
-            add_colour(tile, b->tag[i], rgb, tile->job->textured ? judged : rgb, b->coverage[i], &tile->cover_by_line[0][i], GNOI_BATCH);
-    }
+    if (tile->tinted)
+        add_tinted_batch(tile);
+    else
+        add_batch(tile);
     tile->shaded += b->count;
     b->count = 0;
 }
@@ -201,7 +226,8 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
     const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
     size_t lamps = (size_t)job->lamp_count, corners = slot->receiver.poly->shading == GNO_SHADING_GOURAUD ? 3 : 1;
     double w[3], (*intensity)[3] = seek_intensities(tile, slot, x, y, w);
-    float rgb[3], judged[3], coverage = cells->length[column];
+    float rgb[3], judged[3], share[GNOI_BASE_LINES], coverage = cells->length[column];
+    int lines = judged_lines(tile);
     if (!intensity)
         return;
     for (int k = 0; k < 3; k++)
@@ -221,7 +247,9 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
     }
     for (int k = 0; k < 3; k++)
         judged[k] = rgb[k] * even_factor(tone->mean[k], texel[k]);
-    add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, judged, coverage, &cells->by_line[0][column], GNOI_CELLS);
+    for (int i = 0; i < lines; i++)
+        share[i] = cells->by_line[i][column] / coverage;
+    add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, judged, lines, share, 1);
 }
 
 /* ---- samples for the batch ----------------------------------------------------------------------------------------- */
