@@ -80,7 +80,7 @@ void gnoi_tile_start(gnoi_tile *tile, size_t index)
 }
 
 /* The strip of the lines from `first` on, all between pixels xa and xb. */
-static void add_strip(gnoi_tile *tile, uint32_t first, int xa, int xb, int per_row)
+static void add_strip(gnoi_tile *tile, uint32_t first, int xa, int xb, int per_row, int absent)
 {
     gnoi_strip *s = &tile->strips[tile->strip_count++];
     s->first = first;
@@ -89,6 +89,7 @@ static void add_strip(gnoi_tile *tile, uint32_t first, int xa, int xb, int per_r
     s->xb = (float)xb;
     s->y = (float)(tile->lines.lines[first].y - tile->y0);
     s->per_row = (float)per_row;
+    s->absent = (uint32_t)absent;
 }
 
 /* Lines y = (i + 1/2) / base in every row; the rows of the apron have only the one next to the tile. */
@@ -110,7 +111,7 @@ static void add_base_lines(gnoi_tile *tile)
     tile->row_line[rows] = (uint32_t)tile->lines.line_count;
     tile->strip_count = 0;
     if (!tile->lines.failed)
-        add_strip(tile, 0, 0, tile->width, base);
+        add_strip(tile, 0, 0, tile->width, base, 0);
 }
 
 /* The largest bend, from three lines to the next, of one channel's values a, b, c of three lines. */
@@ -225,7 +226,7 @@ static void add_fine_lines(gnoi_tile *tile, int row, const run *runs, int run_co
             if (i % factor != factor / 2)
                 gnoi_lines_add(&tile->lines, tile->y0 + row - 1 + (i + 0.5) / count, runs[k].first * GNOI_X_ONE, (runs[k].last + 1) * GNOI_X_ONE);
         if (!tile->lines.failed)
-            add_strip(tile, first, runs[k].first, runs[k].last + 1, 0);
+            add_strip(tile, first, runs[k].first, runs[k].last + 1, count, runs[k].need.from);
         if (!tile->fragments.alone)
             tile->refined += runs[k].last - runs[k].first + 1;
     }

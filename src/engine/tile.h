@@ -55,7 +55,7 @@ typedef struct gnoi_frame_job {
 /* Rows of the tile, with one row of apron above and below (the one line next to the tile is made there, to judge its border by). */
 #define GNOI_TILE_ROWS (GNOI_TILE_H + 2)
 #define GNOI_TILE_PIXELS (GNOI_TILE_ROWS * GNOI_TILE_W)
-
+#define GNOI_TILE_SPANS 6 /* 2^5 rows are no more than all, 2^6 are */
 
 /* The farthest right that a position on a line is kept apart. */
 #define GNOI_TILE_MOST ((GNOI_TILE_W + 1.0) * GNOI_X_ONE)
@@ -73,7 +73,8 @@ typedef struct gnoi_item {
 typedef struct gnoi_strip {
     uint32_t first, count;
     float xa, xb, y; /* where they begin and end, and the height of the first, in pixels from the tile's corner */
-    float per_row;   /* lines a pixel row where they are evenly spaced, else 0 */
+    float per_row;   /* lines a pixel row, evenly spaced */
+    uint32_t absent; /* how many of a row are not there: those that were made before */
 } gnoi_strip;
 
 /* A texture with holes is asked for on every line of a pixel; what it was is kept here, by polygon and pixel. */
@@ -150,12 +151,13 @@ typedef struct gnoi_tile {
     size_t steps;              /* a count of lines split, for asking now and then whether to stop */
     gnoi_lines lines;
     uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
-    uint32_t row_mask[GNOI_TILE_ROWS];     /* bit x: some line of the row passes pixel x */
+    uint32_t rows_mask[GNOI_TILE_SPANS][GNOI_TILE_ROWS]; /* [k][row], bit x: some line of the 2^k rows from that row on passes pixel x */
     int strip_count, row_strip[GNOI_TILE_ROWS], row_strip_end[GNOI_TILE_ROWS]; /* strips that hold lines of each row */
     gnoi_strip strips[GNOI_TILE_PIXELS];
     size_t line_y_capacity, bar_capacity;
     double *line_y;                        /* beside the lines while polygons are drawn, and some zeros: their heights */
     float *bar;                            /* beside the lines: what is farther is hidden on all of it; -infinity while it has gaps */
+    size_t covered;                        /* on the lines before this one nothing can be seen any more of the polygons to come */
     gnoi_keyed *order, *order_scratch;     /* the bin's polygons nearest first */
     size_t order_capacity, order_scratch_capacity;
     gnoi_item *items;                      /* beside the order */

@@ -405,7 +405,7 @@ static void set_shares(gnoi_tile *tile, int row)
         tile->pixel_share[x] = 1 / (float)tile->job->def.base_lines;
     for (int s = tile->row_strip[row]; s < tile->row_strip_end[row]; s++) {
         const gnoi_strip *strip = &tile->strips[s];
-        for (int x = (int)strip->xa; x < (int)strip->xb && strip->per_row == 0; x++)
+        for (int x = (int)strip->xa; x < (int)strip->xb && strip->absent > 0; x++)
             tile->pixel_share[x] = 1 / (float)strip->count;
     }
 }

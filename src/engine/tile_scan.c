@@ -4,8 +4,11 @@
  * more. Triangles are set up side by side (scan/lanes.h), polygons of more corners and what must be cut one by one.
  */
 #include "base/fetch.h"
+#include "base/vector.h"
 #include "engine/tile.h"
 #include "engine/tile_crowd.h"
+
+#define INLINE static inline __attribute__((always_inline))
 
 /* Rounding of a position in the picture relative to the tile in single precision, in pixels, generously: where items reach
  * far out of the picture they are not judged by it closely anyway. */
@@ -133,14 +136,24 @@ static void set_bar(gnoi_tile *tile, uint32_t line)
 {
     const gnoi_line *l = &tile->lines.lines[line];
     tile->bar[line] = l->uncovered > 0 ? -HUGE_VALF : l->farthest;
+    tile->covered = line < tile->covered ? line : tile->covered;
 }
 
-/* The pixels of a row from x0 to x1, which may both lie far outside of it. */
-static uint32_t pixel_mask(float x0, float x1)
+/* The pixels [first,end) of a row as bits. */
+static uint32_t pixel_mask(int first, int end) { return (0xffffffffu >> (32 - end)) & (0xffffffffu << first); }
+
+static void set_masks(gnoi_tile *tile)
 {
-    unsigned first = x0 > 0 ? x0 < GNOI_TILE_W ? (unsigned)x0 : GNOI_TILE_W : 0;
-    unsigned last = x1 < GNOI_TILE_W - 1 ? x1 > 0 ? (unsigned)x1 : 0 : GNOI_TILE_W - 1;
-    return (0xffffffffu >> (31 - last)) & (0xffffffffu << first);
+    const int rows = tile->height + 2;
+    for (int row = 0; row < rows; row++) {
+        uint32_t *mask = &tile->rows_mask[0][row];
+        *mask = 0;
+        for (int s = tile->row_strip[row]; s < tile->row_strip_end[row]; s++)
+            *mask |= pixel_mask((int)tile->strips[s].xa, (int)tile->strips[s].xb);
+    }
+    for (int k = 1; k < GNOI_TILE_SPANS; k++)
+        for (int row = 0; row + (1 << k) <= rows; row++)
+            tile->rows_mask[k][row] = tile->rows_mask[k - 1][row] | tile->rows_mask[k - 1][row + (1 << (k - 1))];
 }
 
 static int open_lines(gnoi_tile *tile)
@@ -153,53 +166,46 @@ static int open_lines(gnoi_tile *tile)
         tile->line_y[i] = i < count ? tile->lines.lines[i].y : 0;
     for (uint32_t i = 0; i < count; i++)
         set_bar(tile, i);
-    for (int row = 0; row < tile->height + 2; row++) {
-        tile->row_mask[row] = 0;
-        for (int s = tile->row_strip[row]; s < tile->row_strip_end[row]; s++)
-            tile->row_mask[row] |= pixel_mask(tile->strips[s].xa, tile->strips[s].xb - 1);
-    }
+    set_masks(tile);
     return 1;
 }
 
-/* The rows of lines that the item may cross, as a range of strips. */
-static inline void strip_range(const gnoi_tile *tile, const gnoi_item *item, int *first, int *end)
+INLINE float clamped(float v, float least, float most)
 {
-    int rows = tile->height + 2;
-    float y0 = item->y0 + 1, y1 = item->y1 + 1;
-    int r0 = y0 > 0 ? y0 < (float)rows ? (int)y0 : rows : 0, r1 = y1 > 0 ? y1 < (float)(rows - 1) ? (int)y1 : rows - 1 : 0;
-    uint32_t mask = item->x1 > 0 && item->x0 < GNOI_TILE_W ? pixel_mask(item->x0, item->x1) : 0, seen = 0;
-    *first = 0;
-    *end = tile->strip_count == 1;
-    if (tile->strip_count <= 1 || y1 < 0 || r1 < r0)
-        return;
-    for (int row = r0; row <= r1; row++)
-        seen |= tile->row_mask[row];
-    if (!(seen & mask))
-        return;
-    *first = tile->row_strip[r0];
-    *end = tile->row_strip_end[r1];
+    v = v < least ? least : v;
+    return v > most ? most : v;
 }
 
 /* How many of `count` lines, numbered from 0, lie before f. */
-static inline uint32_t lines_before(float f, uint32_t count)
+INLINE int lines_before(float f, float count)
 {
-    uint32_t n;
-    if (!(f > 0))
-        return 0;
-    if (!(f < (float)count))
-        return count;
-    n = (uint32_t)f;
+    int n;
+    f = clamped(f, 0, count);
+    n = (int)f;
     return n + ((float)n < f);
 }
 
 /* The strip's lines that the item may cross: [*first,*end). */
 static inline void line_range(const gnoi_strip *s, const gnoi_item *item, uint32_t *first, uint32_t *end)
 {
+    const float count = (float)(s->count + s->absent);
+    uint32_t before, to;
     *first = *end = s->first;
     if (!(s->xa < item->x1) || !(s->xb > item->x0))
         return;
-    *first += s->per_row > 0 ? lines_before((item->y0 - s->y) * s->per_row, s->count) : 0;
-    *end += s->per_row > 0 ? lines_before((item->y1 - s->y) * s->per_row, s->count) : s->count;
+    before = (uint32_t)lines_before((item->y0 - s->y) * s->per_row, count);
+    to = (uint32_t)lines_before((item->y1 - s->y) * s->per_row, count);
+    *first += before > s->absent ? before - s->absent : 0;
+    *end += to < s->count ? to : s->count;
+}
+
+/* Whether a surface no nearer than `nearest` may be seen on one of the lines [line,end). */
+static inline int is_open(const gnoi_tile *tile, float nearest, uint32_t line, uint32_t end)
+{
+    for (; line < end; line++)
+        if (!(tile->bar[line] > nearest))
+            return 1;
+    return 0;
 }
 
 /* Moves *strip to the first before `end` in which a line that the item may cross may show a surface no nearer than `nearest`; 0 when
@@ -208,20 +214,68 @@ static inline int find_open(const gnoi_tile *tile, const gnoi_item *item, float 
 {
     for (; *strip < end; ++*strip) {
         uint32_t line, line_end;
-        for (line_range(&tile->strips[*strip], item, &line, &line_end); line < line_end; line++)
-            if (!(tile->bar[line] > nearest))
-                return 1;
+        line_range(&tile->strips[*strip], item, &line, &line_end);
+        if (is_open(tile, nearest, line, line_end))
+            return 1;
     }
     return 0;
 }
 
-/* Whether nothing at nearness z or farther can be seen in the tile any more. */
-static int is_covered(const gnoi_tile *tile, float z)
+/* Whether nothing at nearness z or farther can be seen in the tile any more, asked with falling z. */
+static int is_covered(gnoi_tile *tile, float z)
 {
-    for (size_t i = 0; i < tile->lines.line_count; i++)
-        if (!(tile->bar[i] > z))
-            return 0;
-    return 1;
+    size_t i = tile->covered;
+    while (i < tile->lines.line_count && tile->bar[i] > z)
+        i++;
+    tile->covered = i;
+    return i == tile->lines.line_count;
+}
+
+/* Bounds of items side by side. */
+typedef struct bounds {
+    float x0[GNOI_LANES], x1[GNOI_LANES], y0[GNOI_LANES], y1[GNOI_LANES];
+} bounds;
+
+static void load_bounds(bounds *b, const gnoi_item *items, size_t count)
+{
+    for (size_t i = 0; i < GNOI_LANES; i++) {
+        const gnoi_item *item = &items[i < count ? i : 0];
+        b->x0[i] = item->x0;
+        b->x1[i] = item->x1;
+        b->y0[i] = item->y0;
+        b->y1[i] = item->y1;
+    }
+}
+
+/* The lines, or the rows, that items may cross, side by side: [first,end), none where they meet no line. */
+typedef struct reaches {
+    int32_t first[GNOI_LANES], end[GNOI_LANES];
+} reaches;
+
+/* Lines of the one strip of the base lines. */
+VECTOR_CLONES static void reach_lines(reaches *restrict r, const bounds *restrict b, const gnoi_strip *strip)
+{
+    const float y = strip->y, per_row = strip->per_row, count = (float)strip->count, xa = strip->xa, xb = strip->xb;
+    for (int i = 0; i < GNOI_LANES; i++) {
+        int first = lines_before((b->y0[i] - y) * per_row, count), end = lines_before((b->y1[i] - y) * per_row, count);
+        r->first[i] = first;
+        r->end[i] = (b->x1[i] > xa) & (b->x0[i] < xb) ? end : first;
+    }
+}
+
+/* Rows of the tile. What lies beside it is taken to be in its outermost pixels. */
+VECTOR_CLONES static void reach_rows(reaches *restrict r, const bounds *restrict b, const uint32_t *restrict rows_mask, int rows)
+{
+    const float most = (float)(rows - 1);
+    for (int i = 0; i < GNOI_LANES; i++) {
+        int first = (int)clamped(b->y0[i] + 1, 0, most), last = (int)clamped(b->y1[i] + 1, 0, most), n = last - first + 1;
+        int left = (int)clamped(b->x0[i], 0, 31), right = (int)clamped(b->x1[i], 0, 31);
+        int k = (n >= 2) + (n >= 4) + (n >= 8) + (n >= 16) + (n >= 32);
+        uint32_t seen = rows_mask[k * GNOI_TILE_ROWS + first] | rows_mask[k * GNOI_TILE_ROWS + last + 1 - (1 << k)];
+        uint32_t pixels = (0xffffffffu >> (31 - right)) & (0xffffffffu << left);
+        r->first[i] = first;
+        r->end[i] = seen & pixels ? last + 1 : first;
+    }
 }
 
 /* ---- polygons of any shape ------------------------------------------------------------------------------------------- */
@@ -257,11 +311,10 @@ static void set_polygon(gnoi_tile *tile, const gnoi_poly *poly)
 static void judge_thin(gnoi_tile *tile, const gnoi_item *item)
 {
     gnoi_item around = *item;
-    int strip, end;
+    int strip = 0;
     around.y0 -= 1;
     around.y1 += 1;
-    strip_range(tile, &around, &strip, &end);
-    if (!find_open(tile, &around, item->z1, &strip, end))
+    if (!find_open(tile, &around, item->z1, &strip, tile->strip_count))
         return;
     set_polygon(tile, &tile->job->scene->prepared.polys[item->poly]);
     gnoi_tile_mark_thin(tile, tile->edges, tile->edge_count);
@@ -368,7 +421,8 @@ static void set_up(gnoi_tile *tile, gnoi_item *const *items, unsigned count)
     if (!fresh)
         return;
     for (unsigned i = 0; i < count; i++)
-        gnoi_lanes_set_plane(l, i, &job->scene->prepared.polys[index[i]], gnoi_lanes_tolerance(l, i, &job->bins));
+        if (items[i]->slot == GNOI_NONE)
+            gnoi_lanes_set_plane(l, i, &job->scene->prepared.polys[index[i]], gnoi_lanes_tolerance(l, i, &job->bins));
     gnoi_lanes_bound(l);
     gnoi_lanes_see(l, &job->view, &tile->rect);
     if (!gnoi_tile_reserve_slots(tile, count)) {
@@ -394,20 +448,49 @@ static void draw_handful(gnoi_tile *tile, handful *h)
     tile->failed |= tile->lines.failed;
 }
 
-/* Puts the item into the handful if it may show; draws the handful when it is full. */
-static void take_item(gnoi_tile *tile, gnoi_item *item, handful *h)
+/* Puts the item, which may show on the strips [strip,strip_end), into the handful; draws the handful when it is full. */
+static void take_item(gnoi_tile *tile, gnoi_item *item, int strip, int strip_end, handful *h)
 {
-    int *strip = &h->strip[h->count], *end = &h->strip_end[h->count];
-    if (!(item->x1 > 0) || !(item->x0 < (float)tile->width))
-        return;
-    if (item->thin && tile->judging)
-        judge_thin(tile, item);
-    strip_range(tile, item, strip, end);
-    if (!find_open(tile, item, item->z1 + GNOI_FLOAT_SLACK * fabsf(item->z1), strip, *end))
-        return;
+    h->strip[h->count] = strip;
+    h->strip_end[h->count] = strip_end;
     h->items[h->count++] = item;
     if (h->count == GNOI_LANES)
         draw_handful(tile, h);
+}
+
+static float nearest_of(const gnoi_item *item) { return item->z1 + GNOI_FLOAT_SLACK * fabsf(item->z1); }
+
+/* Takes those of the items that may show on base lines. */
+static void take_on_base(gnoi_tile *tile, gnoi_item *items, size_t count, handful *h)
+{
+    bounds b;
+    reaches r;
+    load_bounds(&b, items, count);
+    reach_lines(&r, &b, &tile->strips[0]);
+    for (size_t i = 0; i < count; i++) {
+        if (items[i].thin && tile->judging && items[i].x1 > 0 && items[i].x0 < (float)tile->width)
+            judge_thin(tile, &items[i]);
+        if (is_open(tile, nearest_of(&items[i]), (uint32_t)r.first[i], (uint32_t)r.end[i]))
+            take_item(tile, &items[i], 0, 1, h);
+    }
+}
+
+/* The same on the strips of finer lines. */
+static void take_on_strips(gnoi_tile *tile, gnoi_item *items, size_t count, handful *h)
+{
+    bounds b;
+    reaches r;
+    load_bounds(&b, items, count);
+    reach_rows(&r, &b, tile->rows_mask[0], tile->height + 2);
+    for (size_t i = 0; i < count; i++) {
+        int strip, end;
+        if (r.first[i] == r.end[i])
+            continue;
+        strip = tile->row_strip[r.first[i]];
+        end = tile->row_strip_end[r.end[i] - 1];
+        if (find_open(tile, &items[i], nearest_of(&items[i]), &strip, end))
+            take_item(tile, &items[i], strip, end, h);
+    }
 }
 
 /* Puts what is not opaque over and between the complete lines. */
@@ -425,6 +508,7 @@ static void draw_range(gnoi_tile *tile, size_t first, size_t end, size_t *made)
 {
     handful h;
     h.count = 0;
+    tile->covered = 0;
     for (size_t i = first, stop; i < end && !tile->failed; i = stop) {
         stop = end - i < GNOI_LANES ? end : i + GNOI_LANES;
         if (i >= *made) {
@@ -433,8 +517,10 @@ static void draw_range(gnoi_tile *tile, size_t first, size_t end, size_t *made)
         }
         if (is_covered(tile, gnoi_key_nearness(tile->order[i].key)))
             break;
-        for (size_t k = i; k < stop; k++)
-            take_item(tile, &tile->items[k], &h);
+        if (tile->strips[0].absent == 0)
+            take_on_base(tile, &tile->items[i], stop - i, &h);
+        else
+            take_on_strips(tile, &tile->items[i], stop - i, &h);
         tile->failed |= i / GNOI_LANES % 4 == 3 && gnoi_stopped(tile->lines.context);
     }
     if (!tile->failed)
