@@ -134,16 +134,32 @@ typedef struct shape {
     double top_x, top_y, middle_x, middle_y, bottom_y, slope, upper, lower;
 } shape;
 
-/* GNOI_LANE_STEP lines: a loop of fixed length, so that no part of it is left to code for the rest. */
+/* Picture coordinate v as gnoi_lane_position has it, before rounding; `none` where the line is outside of the triangle. */
+INLINE double place_on_line(double v, double x, double most, int inside, double none)
+{
+    double t = (v - x) * GNOI_X_ONE;
+    t = t < -(double)GNOI_X_ONE ? -(double)GNOI_X_ONE : t;
+    t = t > most ? most : t;
+    return inside ? t : none;
+}
+
+INLINE int32_t rounded(double t) { return (int32_t)(t + (GNOI_X_ONE + 0.5)) - GNOI_X_ONE; }
+
+/* GNOI_LANE_STEP lines: loops of fixed length, so that no part of them is left to code for the rest; two of them, so that each choice stands alone. */
 INLINE void cross_some(int32_t *restrict from, int32_t *restrict to, const double *restrict y, shape s, double x, double most)
 {
+    double left[GNOI_LANE_STEP], right[GNOI_LANE_STEP];
     for (unsigned i = 0; i < GNOI_LANE_STEP; i++) {
-        int above = y[i] < s.middle_y, inside = (y[i] >= s.top_y) & (y[i] < s.bottom_y);
+        int above = y[i] < s.middle_y;
         double a = s.top_x + (y[i] - s.top_y) * s.slope;
         double b = (above ? s.top_x : s.middle_x) + (y[i] - (above ? s.top_y : s.middle_y)) * (above ? s.upper : s.lower);
-        double v0 = inside ? least(a, b) : HUGE_VAL, v1 = inside ? most_of(a, b) : -HUGE_VAL;
-        from[i] = gnoi_lane_position(v0, x, most);
-        to[i] = gnoi_lane_position(v1, x, most);
+        left[i] = least(a, b);
+        right[i] = most_of(a, b);
+    }
+    for (unsigned i = 0; i < GNOI_LANE_STEP; i++) {
+        int inside = (y[i] >= s.top_y) & (y[i] < s.bottom_y);
+        from[i] = rounded(place_on_line(left[i], x, most, inside, most));
+        to[i] = rounded(place_on_line(right[i], x, most, inside, -(double)GNOI_X_ONE));
     }
 }
 
