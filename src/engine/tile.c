@@ -167,7 +167,7 @@ static int mark_row(const gnoi_tile *tile, int row, need needs[GNOI_TILE_W])
 
 /* Where more than this share of a tile bends, it is full of things as small as the lines are apart, and those that lie between two base
  * lines are many: then all its pixels get all lines. */
-#define CROWDED (1.0 / 3)
+#define CROWDED 0.4
 
 static void mark_bends(const gnoi_tile *tile, need needs[][GNOI_TILE_W])
 {
