@@ -112,8 +112,8 @@ def reference(name, view, given):
     path = os.path.join(OUT, "reference", name + ".pfm")
     if not os.path.exists(path) and PEER:
         os.makedirs(os.path.dirname(path), exist_ok=True)
-        print(f"making the reference of {name}: 256 samples a pixel, 1024 at edges ...", file=sys.stderr, flush=True)
-        run([PEER, view, "-R", "-B", "-e", "1e-7", "-m", "jitter", "-a", "256:0.02", "-s", "1024", "-o", path + ".part"])
+        print(f"making the reference of {name}: 256 samples a pixel, 4096 at edges ...", file=sys.stderr, flush=True)
+        run([PEER, view, "-R", "-B", "-e", "1e-7", "-m", "jitter", "-a", "256:0.01", "-s", "4096", "-o", path + ".part"])
         os.rename(path + ".part", path)
     return path if os.path.exists(path) else None
 
@@ -172,18 +172,18 @@ def ratio(theirs, ours, mark=""):
     return f"{mark}{theirs / ours:.1f}" if theirs and ours else "-"
 
 
-def measure(name, files, size, threads, settings, want_error):
-    scene, view, given = files
+def measure(name, files, size, threads, settings, against, errors):
+    """Errors that are known already, as they are of another number of threads, are not measured again."""
+    scene, view, _ = files
     picture = os.path.join(OUT, "gnomon.pfm")
     times, ours, theirs, builds = {}, [], {s: [] for s in settings}, []
-    errors = {}
-    against = reference(name, view, given) if want_error else None
+    errors = dict(errors)
     for i in range(REPEATS):  # one after the other, so that a busy moment meets all alike
         ours.append(gnomon_once(scene, size, threads, picture))
         for s in settings if PEER else []:
             if i >= SELDOM.get(s, REPEATS):
                 continue
-            peer_picture = os.path.join(OUT, "peer.pfm") if i == 0 and against else None
+            peer_picture = os.path.join(OUT, "peer.pfm") if against and s not in errors else None
             seconds, build = peer_once(view, size, threads, s, peer_picture)
             theirs[s].append(seconds)
             builds.append(build)
@@ -205,7 +205,17 @@ def tell(name, size, threads, m, pov):
         f"{m['low']:.3f} / {m['median']:.3f} | {ratio(m['times'].get('1', (None,))[0], m['low'])} | {pov or '-'} |")
 
 
-def tell_errors(name, m):
+# What a scene is held to at equal error, in the peer's time: all pixels alike, and its best adaptive setting.
+MOST_SCENES, FEW_POLYGONS, FEW_NAMES = (10, 1), (20, 2), ("room", "town-1k", "town-10k")
+
+
+def judge_speed(name, threads, m, alike, best):
+    for what, theirs, least in zip(("all pixels alike", "the best adaptive setting"), (alike, best), FEW_POLYGONS if name in FEW_NAMES else MOST_SCENES):
+        if theirs and theirs < least * m["low"]:
+            missed.append(f"{name}, {threads} threads: {theirs / m['low']:.1f} times as fast as {what}, at least {least}")
+
+
+def tell_errors(name, threads, m):
     curve = [(m["times"][s][0], m["errors"].get(s)) for s in ALIKE if s in m["times"]]
     adaptive = [(m["times"][s][0], m["errors"].get(s)) for s in ADAPTIVE if s in m["times"]]
     alike, (best, mark) = at_error(curve, m["rms"]), best_adaptive(adaptive, m["rms"])
@@ -214,8 +224,10 @@ def tell_errors(name, m):
     good = "" if bound is None or m["rms"] is None else "yes" if m["rms"] <= bound else "NO"
     if good == "NO":
         missed.append(f"{name}: error {m['rms']:.5f} above the peer's at 64 samples, {bound:.5f}")
-    say(f"| {name} | {m['rms']:.5f} {m['low']:.3f} | " + " | ".join(cells) + f" | {good} | {ratio(alike, m['low'])} | {ratio(best, m['low'], mark)} |")
-    plots[name] = {"gnomon": [(m["low"], m["rms"])], "alike": curve, "adaptive": adaptive}
+    judge_speed(name, threads, m, alike, best)
+    say(f"| {name} | {threads} | {m['rms']:.5f} {m['low']:.3f} | " + " | ".join(cells) + f" | {good} | {ratio(alike, m['low'])} | {ratio(best, m['low'], mark)} |")
+    if name not in plots:
+        plots[name] = {"gnomon": [(m["low"], m["rms"])], "alike": curve, "adaptive": adaptive}
 
 
 def pictures(names, sizes, threads, settings, with_povray):
@@ -230,23 +242,25 @@ def pictures(names, sizes, threads, settings, with_povray):
             continue
         for size in sizes:
             for t in threads:
-                error = size == FULL_HD and t == threads[0]
-                m = measure(name, files, size, t, settings if error else settings[:1], error)
+                first = results.get((name, size, threads[0]), {"errors": {}})
+                against = reference(name, files[1], files[2]) if size == FULL_HD else None
+                m = measure(name, files, size, t, settings if size == FULL_HD else settings[:1], against, first["errors"])
                 pov = None
-                if with_povray and POVRAY and error:
+                if with_povray and POVRAY and size == FULL_HD and t == threads[0]:
                     seconds = povray.seconds(POVRAY, files[1], size, t, OUT)
                     if seconds is not None:
                         record(name, size, t, "povray", "1", [seconds])
                         pov = f"{seconds:.1f}"
                 tell(name, size, t, m, pov)
                 results[name, size, t] = m
-    say("\n## Error and time at 1920x1080\n\nRMS error over all pixels and channels against the converged reference, and seconds. `64`: is gnomon's error at most the"
+    say("\n## Error and time at 1920x1080\n\nSeconds of the peer with its BVH. RMS error over all pixels and channels against the converged reference, and seconds. `64`: is gnomon's error at most the"
         " peer's at 64 samples; `alike`: the peer's time at gnomon's error with all pixels alike (its curve, straight in logarithms) to gnomon's;"
         " `adaptive`: that of its fastest adaptive setting that is as good (~: none is; as far as the line through its best ones tells).\n")
-    say("| scene | gnomon | " + " | ".join(f"peer {s}" for s in ALIKE + ADAPTIVE) + " | 64 | alike | adaptive |\n|" + "---|" * (5 + len(ALIKE + ADAPTIVE)))
-    for (name, size, t), m in results.items():
-        if m["rms"] is not None and t == threads[0]:
-            tell_errors(name, m)
+    say("| scene | threads | gnomon | " + " | ".join(f"peer {s}" for s in ALIKE + ADAPTIVE) + " | 64 | alike | adaptive |\n|" + "---|" * (6 + len(ALIKE + ADAPTIVE)))
+    for t in threads:
+        for (name, size, of), m in results.items():
+            if m["rms"] is not None and t == of:
+                tell_errors(name, t, m)
     if len(threads) > 1:
         say("\n## Two threads\n\n| scene | size | one thread / two |\n|---|---|---|")
         for (name, size, t), m in results.items():
