@@ -2,6 +2,7 @@
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "io/atomic_file.h"
+#include "io/send.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -10,13 +11,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/uio.h>
 #include <unistd.h>
 
 #ifndef PATH_MAX
 #define PATH_MAX 4096
 #endif
 
-enum { TEMPORARY_TRIES = 1000, TEMPORARY_NAME = 64 };
+enum { TEMPORARY_TRIES = 1000, TEMPORARY_NAME = 64, SENT_AT_ONCE = 1 << 20 /* bytes */ };
 
 static gno_status fail(gno_context *context, const char *path, const char *what, int error)
 {
@@ -188,10 +190,60 @@ static int write_all(int descriptor, const char *data, size_t size)
     return 0;
 }
 
+/* What was written goes to the disk while more is made, so that fsync waits for the rest alone. */
+static void count_written(gnoi_file *file, size_t size)
+{
+    file->unsent += size;
+    if (file->temporary != NULL && file->unsent >= SENT_AT_ONCE) {
+        gnoi_send(file->descriptor, file->sent, file->unsent);
+        file->sent += file->unsent;
+        file->unsent = 0;
+    }
+}
+
 int gnoi_file_write(gnoi_file *file, const void *data, size_t size)
 {
     if (file->error == 0) {
         file->error = write_all(file->descriptor, data, size);
+        count_written(file, size);
+    }
+    return file->error == 0;
+}
+
+/* One call for up to GNOI_FILE_ROWS rows; returns the number of bytes written, -1 with errno. */
+static ssize_t write_some_rows(int descriptor, const char *first, ptrdiff_t step, size_t size, int count)
+{
+    struct iovec rows[GNOI_FILE_ROWS];
+    ssize_t done;
+    for (int k = 0; k < count; k++) {
+        rows[k].iov_base = (char *)first + k * step; /* only read */
+        rows[k].iov_len = size;
+    }
+    do {
+        done = writev(descriptor, rows, count);
+    } while (done < 0 && errno == EINTR);
+    return done;
+}
+
+int gnoi_file_write_rows(gnoi_file *file, const void *first, ptrdiff_t step, size_t size, int count)
+{
+    const char *row = first;
+    while (count > 0 && file->error == 0) {
+        const ssize_t done = write_some_rows(file->descriptor, row, step, size, count < GNOI_FILE_ROWS ? count : GNOI_FILE_ROWS);
+        if (done < 0) {
+            file->error = errno;
+            break;
+        }
+        const int whole = (int)((size_t)done / size);
+        const size_t part = (size_t)done % size;
+        count_written(file, (size_t)done);
+        row += whole * step;
+        count -= whole;
+        if (count > 0 && (part > 0 || done == 0)) { /* the disk or the pipe is full: the rest of the row tells */
+            gnoi_file_write(file, row + part, size - part);
+            row += step;
+            count--;
+        }
     }
     return file->error == 0;
 }

@@ -11,7 +11,9 @@
 #define GNOI_IO_ATOMIC_FILE_H
 
 #include <gnomon/gnomon.h>
+#include <stddef.h>
 #include <stdint.h>
+#include <stddef.h>
 
 typedef struct gnoi_file {
     gno_context *context;
@@ -22,6 +24,7 @@ typedef struct gnoi_file {
     int descriptor; /* where writing goes */
     int drain;      /* where a gathered file goes at the end, or -1 */
     int error;      /* the first errno, 0: none */
+    uint64_t sent, unsent; /* bytes appended: on their way to the disk; behind these */
 } gnoi_file;
 
 /* Opens path for writing; seekable says that gnoi_file_write_at will be used. On failure nothing stays open or behind.
@@ -30,6 +33,13 @@ gno_status gnoi_file_open(gno_context *context, const char *path, int seekable, 
 
 /* Appends; returns 0 after an error. */
 int gnoi_file_write(gnoi_file *file, const void *data, size_t size);
+
+int gnoi_file_write_rows(gnoi_file *file, const void *rows, ptrdiff_t step, size_t size, int count);
+
+/* Appends `count` rows of `size` bytes (not 0), each `step` bytes behind the one before in memory; up to GNOI_FILE_ROWS go in one call of the
+ * system. Returns 0 after an error. */
+#define GNOI_FILE_ROWS 64
+int gnoi_file_write_rows(gnoi_file *file, const void *first, ptrdiff_t step, size_t size, int count);
 
 /* Says how much of the file is made, and asks whether to go on: for encoders, at every row or block. Returns 0 after an error and
  * when the progress callback says stop; gnoi_file_commit then removes the file and returns CANCELLED. */
