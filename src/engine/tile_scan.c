@@ -259,7 +259,7 @@ VECTOR_CLONES static void reach_lines(reaches *restrict r, const bounds *restric
     for (int i = 0; i < GNOI_LANES; i++) {
         int first = lines_before((b->y0[i] - y) * per_row, count), end = lines_before((b->y1[i] - y) * per_row, count);
         r->first[i] = first;
-        r->end[i] = (b->x1[i] > xa) & (b->x0[i] < xb) ? end : first;
+        r->end[i] = ((b->x1[i] > xa) & (b->x0[i] < xb)) ? end : first;
     }
 }
 

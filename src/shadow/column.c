@@ -375,6 +375,7 @@ void gnoi_columns_reset(gnoi_columns *columns)
     columns->caster_count = 0;
     columns->edge_count = 0;
     columns->rim_count = 0;
+    columns->crossed.rim_count = 0;
 }
 
 void gnoi_columns_free(gnoi_columns *columns)
@@ -389,7 +390,7 @@ void gnoi_columns_free(gnoi_columns *columns)
         gnoi_gathered_free(columns->context, &columns->nears[i].rim);
     }
     gnoi_free(columns->context, columns->rims, columns->rim_capacity, sizeof *columns->rims);
-    gnoi_free(columns->context, columns->steps, columns->step_capacity, sizeof *columns->steps);
+    gnoi_free(columns->context, columns->crossed.steps, columns->crossed.capacity, sizeof *columns->crossed.steps);
     gnoi_free(columns->context, columns->rows.items, columns->rows.capacity, sizeof *columns->rows.items);
     gnoi_free(columns->context, columns->points, columns->point_capacity, sizeof *columns->points);
     gnoi_free(columns->context, columns->intervals, columns->interval_capacity, sizeof *columns->intervals);

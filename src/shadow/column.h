@@ -44,8 +44,19 @@ typedef struct gnoi_rim {
 /* Where a line crosses a contour edge. */
 typedef struct gnoi_step {
     double x;
+    double edge_x, edge_y, slope; /* the edge's: x at height y is edge_x + (y - edge_y) slope */
     int step;
 } gnoi_step;
+
+/* A line's crossings with a column's contour edges, from left to right. */
+typedef struct gnoi_crossed {
+    uint32_t rim, rim_count; /* the column's; rim_count 0: of no column */
+    int row;                 /* of the receiver's region */
+    int left;                /* far sides over the receiver to the left of all crossings */
+    double top, bottom;      /* the same edges cross all lines of the row from top to before bottom */
+    size_t count, capacity;
+    gnoi_step *steps;
+} gnoi_crossed;
 
 typedef struct gnoi_column {
     gnoi_column_state state;
@@ -82,8 +93,7 @@ typedef struct gnoi_columns {
     gnoi_edge *edges;
     size_t rim_count, rim_capacity;
     gnoi_rim *rims;
-    size_t step_capacity;
-    gnoi_step *steps;         /* of the line asked for last */
+    gnoi_crossed crossed;     /* of the line asked for last */
     gnoi_list found;                 /* candidates of the tree */
     gnoi_list rows;
     size_t point_capacity;

@@ -187,7 +187,6 @@ static inline int collect(const gnoi_shade *shade, const gnoi_column *column, do
     float fy = (float)y, fa = (float)xa, fb = (float)xb;
     gnoi_row_list list = gnoi_row_list_of(columns, receiver, column->rows, column->caster, column->caster_count, gnoi_region_row(receiver, y));
     size_t before;
-    columns->interval_count = 0;
     for (uint32_t i = 0; i < list.count; i++) {
         const gnoi_caster *c = &columns->casters[gnoi_row_list_item(&list, i)];
         if (fy < c->y0 || fy > c->y1 || c->x0 > fb || c->x1 < fa)
@@ -209,12 +208,14 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
     gnoi_shade shade = {scene, view, lamp, receiver};
     size_t before;
     if (lamp->softness > 0) { /* nothing is halved, there is no sheet */
+        columns->interval_count = 0;
         if (!collect(&shade, column, y, xa, xb, 1, columns))
             return 0;
         before = columns->interval_count;
         return (!lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns)) && note_source(columns, before, GNOI_NONE);
     }
-    if (!collect(&shade, column, y, xa, xb, 0, columns))
+    columns->interval_count = 0;
+    if (column->caster_count > 0 && !collect(&shade, column, y, xa, xb, 0, columns))
         return 0;
     if (column->sheet && !gnoi_sheet_intervals(scene, view, lamp, casters, receiver, column, y, xa, xb, columns))
         return 0;

@@ -61,10 +61,13 @@ void gnoi_list_drop_repeats(gnoi_list *list);
 /* Where no contour edge and no far side comes near: ALL or NOWHERE, as at this point of the receiver's plane. */
 gnoi_sheet_state gnoi_sheet_at(const gnoi_pair *p, const gnoi_casters *casters, vec3 point);
 
+/* The number of far sides over a point of the receiver's plane. */
+int gnoi_sheet_count(const gnoi_pair *p, const gnoi_casters *casters, vec3 point);
+
 /* Gathers the contour edges of columns->near, unless that was done. Returns 0 when memory fails. */
 int gnoi_sheet_gather_rims(const gnoi_casters *casters, gnoi_columns *columns);
 
-/* Appends the intervals of line y that the column's contour edges bound. Returns 0 when memory fails. */
+/* sheet_line.c: appends the intervals of line y that the column's contour edges bound. Returns 0 when memory fails. */
 int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                          const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns);
 
