@@ -31,17 +31,13 @@ static int wrapped(int i, int n, gno_wrap wrap)
     return wrap == GNO_WRAP_MIRROR && copy % 2 != 0 ? n - 1 - i : i;
 }
 
-typedef struct weighed {
-    float value[4], weight;
-} weighed;
-
 /* Solid bytes, their columns within the picture, their rows too or in the next repetition: `count` rows, each with as many cells for
  * every lane, for counts that change from lane to lane cost more than what they spare. */
-static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, int count, int column, int row, int lane, weighed *sum)
+static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, int count, int column, int row, int lane, float sum[4])
 {
     const gnoi_image *image = look->image;
     const float *decode = image->decode;
-    float red = sum->value[0], green = sum->value[1], blue = sum->value[2], weight = sum->weight;
+    float red = sum[0], green = sum[1], blue = sum[2];
     row += row < 0 ? image->height : 0;
     for (int r = 0; r < count; r++, row = row + 1 == image->height ? 0 : row + 1) {
         unsigned char(*v)[4] = image->bytes + (size_t)row * (size_t)image->width + (size_t)(column + (int)rows[r].first[lane]);
@@ -50,16 +46,14 @@ static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, i
             red += area * decode[v[c][0]];
             green += area * decode[v[c][1]];
             blue += area * decode[v[c][2]];
-            weight += area;
         }
     }
-    sum->value[0] = red;
-    sum->value[1] = green;
-    sum->value[2] = blue;
-    sum->weight = weight;
+    sum[0] = red;
+    sum[1] = green;
+    sum[2] = blue;
 }
 
-static void add_values(const gnoi_look *look, int l, int column, int row, const gnoi_filter_lane_row *cells, int lane, weighed *sum)
+static void add_values(const gnoi_look *look, int l, int column, int row, const gnoi_filter_lane_row *cells, int lane, float sum[4])
 {
     const gnoi_image_level *level = &look->image->level[l];
     int j = wrapped(row, level->height, (gno_wrap)look->wrap);
@@ -69,17 +63,16 @@ static void add_values(const gnoi_look *look, int l, int column, int row, const 
         if (i >= 0 && j >= 0)
             gnoi_image_value(look->image, l, i, j, value);
         for (int k = 0; k < 4; k++)
-            sum->value[k] += area * value[k];
-        sum->weight += area;
+            sum[k] += area * value[k];
     }
 }
 
-static void answer(const gnoi_look *look, float share, int is_solid, const weighed *sum)
+static void answer(const gnoi_look *look, float share, int is_solid, const float sum[4], float weight)
 {
-    float k = share / sum->weight;
+    float k = share / weight;
     for (int i = 0; i < 3; i++)
-        look->mean[i] += k * sum->value[i];
-    look->mean[3] += is_solid ? share : k * sum->value[3];
+        look->mean[i] += k * sum[i];
+    look->mean[3] += is_solid ? share : k * sum[3];
 }
 
 #define ROWS 8 /* at once */
@@ -121,10 +114,10 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
 {
     gnoi_filter_lanes lanes;
     gnoi_filter_lane_row cells[ROWS];
-    weighed sum[GNOI_FILTER_LANES];
+    float sum[GNOI_FILTER_LANES][4];
     int rows = 0;
     for (int i = 0; i < count; i++)
-        sum[i].value[0] = sum[i].value[1] = sum[i].value[2] = sum[i].value[3] = sum[i].weight = 0;
+        sum[i][0] = sum[i][1] = sum[i][2] = sum[i][3] = 0;
     load(&looks->lanes, which, count, &lanes);
     gnoi_filter_lanes_start(&lanes);
     for (int i = 0; i < count; i++)
@@ -133,26 +126,26 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
         fetch_rows(looks, which[i], &lanes, i);
     for (int r0 = 0; r0 < rows; r0 += ROWS) {
         int n = rows - r0 < ROWS ? rows - r0 : ROWS, most = 0;
-        for (int r = 0; r < n; r++) {
-            gnoi_filter_lanes_row(&lanes, r0 + r, &cells[r]);
+        gnoi_filter_lanes_rows(&lanes, r0, n, cells);
+        for (int r = 0; r < n; r++)
             most = cells[r].most > most ? cells[r].most : most;
-        }
         for (int i = 0; i < count; i++) {
             const gnoi_look *l = &looks->look[which[i]];
             int column = looks->lanes.column[which[i]], first = looks->lanes.row[which[i]] + (int)lanes.first_row[i] + r0;
             int m = lanes.rows[i] - r0 < n ? lanes.rows[i] - r0 : n, level = level_of(looks, which[i]);
             if (level == 0 && l->image->is_solid && rows_follow(l, first, m) && column + (int)lanes.low_x[i] - 1 >= 0 &&
                 column + (int)lanes.high_x[i] + 1 + most <= l->image->width) {
-                add_bytes(l, cells, m, column, first, i, &sum[i]);
+                add_bytes(l, cells, m, column, first, i, sum[i]);
                 continue;
             }
             for (int r = 0; r < m; r++)
-                add_values(l, level, column + (int)cells[r].first[i], first + r, &cells[r], i, &sum[i]);
+                add_values(l, level, column + (int)cells[r].first[i], first + r, &cells[r], i, sum[i]);
         }
     }
     for (int i = 0; i < count; i++) {
         float share = which[i] < GNOI_ASKED ? 1 : looks->part[which[i] - GNOI_ASKED].share;
-        answer(&looks->look[which[i]], share, looks->look[which[i]].image->is_solid && level_of(looks, which[i]) == 0, &sum[i]);
+        answer(&looks->look[which[i]], share, looks->look[which[i]].image->is_solid && level_of(looks, which[i]) == 0, sum[i],
+               lanes.weight[i]);
     }
 }
 
@@ -295,7 +288,7 @@ static void add_look(gnoi_looks *looks, const gnoi_look *of, const view *v, int 
     to->sx[i] = (float)(k * v->sx), to->sy[i] = (float)(k * v->sy);
     to->tx[i] = (float)(k * v->tx), to->ty[i] = (float)(k * v->ty);
     to->wx[i] = (float)v->wx, to->wy[i] = (float)v->wy;
-    to->kind[i] = gnoi_look_kind(fabsf(to->sx[i]) + fabsf(to->sy[i]), fabsf(to->tx[i]) + fabsf(to->ty[i]), fabsf(to->wx[i]) + fabsf(to->wy[i]));
+    to->kind[i] = gnoi_look_kind(to->s[i], to->t[i], fabsf(to->sx[i]) + fabsf(to->sy[i]), fabsf(to->tx[i]) + fabsf(to->ty[i]), fabsf(to->wx[i]) + fabsf(to->wy[i]));
 }
 
 /* ---- coarser cells ---------------------------------------------------------------------------------------------------------- */

@@ -6,6 +6,7 @@
 #define INLINE static inline __attribute__((always_inline))
 #define LEVEL_EDGE 1e-12f /* edges of less height leave no area */
 #define FAR 1e10f
+#define FEW_COLUMNS 8
 
 INLINE float lesser(float a, float b) { return a < b ? a : b; }
 INLINE float greater(float a, float b) { return a > b ? a : b; }
@@ -19,6 +20,139 @@ INLINE float floor_of(float v)
 
 INLINE float least(gnoi_filter_lane_values v[4], int i) { return lesser(lesser(v[0][i], v[1][i]), lesser(v[2][i], v[3][i])); }
 INLINE float largest(gnoi_filter_lane_values v[4], int i) { return greater(greater(v[0][i], v[1][i]), greater(v[2][i], v[3][i])); }
+
+/* Where a line between rows meets the edges: x and y; the nearer end where it does not. */
+typedef struct border {
+    gnoi_filter_lane_values x[4], y[4];
+} border;
+
+/* What a row leaves of the edges: x of the left and of the right end, height, y of the left end and of the middle, from t. */
+typedef struct stretches {
+    gnoi_filter_lane_values left[4], right[4], height[4], left_y[4], middle_y[4];
+    gnoi_filter_lane_values low, high; /* least and largest x */
+} stretches;
+
+INLINE void find_border(const gnoi_filter_lanes *restrict l, int row, border *restrict b)
+{
+    for (int e = 0; e < 4; e++)
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+            b->y[e][i] = within(l->first_row[i] + (float)row, l->y[e][i], l->end_y[e][i]);
+            b->x[e][i] = within(l->x[e][i] + (b->y[e][i] - l->y[e][i]) * l->slope[e][i], l->low_x[i], l->high_x[i]);
+        }
+}
+
+INLINE void cut_edges(const gnoi_filter_lanes *restrict l, const border *restrict from, const border *restrict to, int uneven,
+                      stretches *restrict s)
+{
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+        s->low[i] = FAR;
+        s->high[i] = -FAR;
+    }
+    for (int e = 0; e < 4; e++)
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+            float off = 2.0f * FAR * (float)(from->y[e][i] == to->y[e][i]);
+            s->left[e][i] = lesser(from->x[e][i], to->x[e][i]);
+            s->right[e][i] = greater(from->x[e][i], to->x[e][i]);
+            s->height[e][i] = to->y[e][i] - from->y[e][i];
+            s->low[i] = lesser(s->low[i], s->left[e][i] + off);
+            s->high[i] = greater(s->high[i], s->right[e][i] - off);
+        }
+    for (int e = 0; e < 4 && uneven; e++)
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+            s->left_y[e][i] = l->rightward[e][i] * from->y[e][i] + (1.0f - l->rightward[e][i]) * to->y[e][i] - l->t[i];
+            s->middle_y[e][i] = 0.5f * (from->y[e][i] + to->y[e][i]) - l->t[i];
+        }
+}
+
+/* Columns between low and high; returns those of the lane with most. */
+INLINE int set_columns(const float *restrict low, const float *restrict high, float *restrict first, int *restrict columns)
+{
+    int most = 0;
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+        float some = (float)(low[i] <= high[i]);
+        first[i] = floor_of(some * low[i]);
+        columns[i] = ((int)(floor_of(some * high[i]) - first[i]) + 1) * (int)some;
+    }
+    for (int i = 0; i < GNOI_FILTER_LANES; i++)
+        most = columns[i] > most ? columns[i] : most;
+    if (most > GNOI_LANE_COLUMNS) {
+        most = GNOI_LANE_COLUMNS;
+        for (int i = 0; i < GNOI_FILTER_LANES; i++)
+            columns[i] = columns[i] < most ? columns[i] : most;
+    }
+    return most;
+}
+
+/* The row's own columns where that spares some, those of all rows where the search costs more. */
+INLINE void choose_columns(const gnoi_filter_lanes *restrict l, const stretches *restrict s, gnoi_filter_lane_row *restrict out)
+{
+    if (l->most > FEW_COLUMNS) {
+        out->most = set_columns(s->low, s->high, out->first, out->columns);
+        return;
+    }
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+        out->first[i] = l->first_column[i];
+        out->columns[i] = l->columns[i];
+    }
+    out->most = l->most;
+}
+
+/* Along a stretch u = max(line - x, 0) runs from `near` at its right end to near + d at its left one, the second part of it over twice
+ * `over` of its height. Left of the line, the area is the sum of heights times the mean of u. */
+INLINE float even_sum(const gnoi_filter_lanes *restrict l, const stretches *restrict s, float line, int i)
+{
+    float sum = 0;
+    for (int e = 0; e < 4; e++) {
+        float wide = greater(line, s->left[e][i]) - s->left[e][i], near = greater(line, s->right[e][i]) - s->right[e][i];
+        float over = lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]);
+        sum += l->turn[e][i] * (s->height[e][i] * near + (wide - near) * over);
+    }
+    return sum;
+}
+
+/* Uneven, it is the sum of the integrals of u (1 + gain at the line) - gain_x u^2 / 2. */
+INLINE float uneven_sum(const gnoi_filter_lanes *restrict l, const stretches *restrict s, float line, int i)
+{
+    float part = 0, by_y = 0, square = 0, rest = 0;
+    for (int e = 0; e < 4; e++) {
+        float wide = greater(line, s->left[e][i]) - s->left[e][i], near = greater(line, s->right[e][i]) - s->right[e][i], d = wide - near;
+        float over = lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]), lean = (1.0f - 2.0f * l->rightward[e][i]) * (2.0f / 3.0f);
+        float a = l->turn[e][i] * s->height[e][i] * near, b = l->turn[e][i] * (d * over);
+        part += a + b;
+        by_y += a * s->middle_y[e][i] + b * (s->left_y[e][i] - over * lean);
+        square += a * wide;
+        rest += b * d;
+    }
+    square = 0.5f * square + rest * (1.0f / 3.0f);
+    return part * (1.0f + l->gain_x[i] * (line - l->s[i])) + by_y * l->gain_y[i] - square * l->gain_x[i];
+}
+
+INLINE void sum_cells(gnoi_filter_lanes *restrict l, const stretches *restrict s, int uneven, gnoi_filter_lane_row *restrict out)
+{
+    gnoi_filter_lane_values before;
+    for (int i = 0; i < GNOI_FILTER_LANES; i++)
+        before[i] = 0;
+    for (int c = 0; c < out->most; c++)
+        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+            float line = out->first[i] + (float)(c + 1), sum = uneven ? uneven_sum(l, s, line, i) : even_sum(l, s, line, i);
+            out->area[c][i] = (sum - before[i]) * (float)(line - 1.0f <= s->high[i]);
+            l->weight[i] += out->area[c][i];
+            before[i] = sum;
+        }
+}
+
+INLINE void cover_rows(gnoi_filter_lanes *restrict l, int first, int count, int uneven, gnoi_filter_lane_row *restrict out)
+{
+    border line[2];
+    stretches s;
+    find_border(l, first, &line[0]);
+    for (int r = 0; r < count; r++) {
+        find_border(l, first + r + 1, &line[(r + 1) & 1]);
+        cut_edges(l, &line[r & 1], &line[(r + 1) & 1], uneven, &s);
+        choose_columns(l, &s, &out[r]);
+        sum_cells(l, &s, uneven, &out[r]);
+    }
+}
 
 /* Clones are exported by whatever name they have unless they are static: hence the functions below. */
 VECTOR_CLONES static void start(gnoi_filter_lanes *l)
@@ -35,8 +169,10 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
         l->low_x[i] = least(x, i);
         l->high_x[i] = largest(x, i);
         l->first_row[i] = floor_of(least(y, i));
+        l->weight[i] = 0;
         l->rows[i] = (int)(floor_of(largest(y, i)) - l->first_row[i]) + 1;
     }
+    l->most = set_columns(l->low_x, l->high_x, l->first_column, l->columns);
     for (int c = 0; c < 4; c++)
         for (int i = 0; i < GNOI_FILTER_LANES; i++) {
             float x0 = x[c][i], y0 = y[c][i], x1 = x[(c + 1) & 3][i], y1 = y[(c + 1) & 3][i], down_there = (float)(y0 < y1), dx, dy, level;
@@ -48,7 +184,7 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
             dy = l->end_y[c][i] - l->y[c][i];
             level = (float)(dy < LEVEL_EDGE);
             l->slope[c][i] = (1.0f - level) * dx / (dy + level);
-            l->rise[c][i] = dy / (fabsf(dx) + 1e-30f);
+            l->half_rise[c][i] = 0.5f * dy / (fabsf(dx) + 1e-30f);
             l->rightward[c][i] = (float)(dx > 0.0f);
         }
     /* Areas in the picture go with w^3, which is linear enough over so little. */
@@ -63,94 +199,12 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
         l->uneven |= l->gain_x[i] != 0 || l->gain_y[i] != 0;
 }
 
-/* What a row leaves of the edges: x of the left and of the right end, height, y of the left end and of the middle, from t. */
-typedef struct stretches {
-    gnoi_filter_lane_values left[4], right[4], height[4], left_y[4], middle_y[4];
-    gnoi_filter_lane_values low, high; /* least and largest x */
-} stretches;
-
-INLINE void cut_edges(const gnoi_filter_lanes *restrict l, int row, int uneven, stretches *restrict s)
-{
-    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
-        s->low[i] = FAR;
-        s->high[i] = -FAR;
-    }
-    for (int e = 0; e < 4; e++)
-        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
-            float top = l->first_row[i] + (float)row, a, b, off;
-            float from = within(l->y[e][i], top, top + 1.0f), to = within(l->end_y[e][i], top, top + 1.0f);
-            a = within(l->x[e][i] + (from - l->y[e][i]) * l->slope[e][i], l->low_x[i], l->high_x[i]);
-            b = within(l->x[e][i] + (to - l->y[e][i]) * l->slope[e][i], l->low_x[i], l->high_x[i]);
-            s->left[e][i] = lesser(a, b);
-            s->right[e][i] = greater(a, b);
-            s->height[e][i] = to - from;
-            if (uneven) {
-                s->left_y[e][i] = l->rightward[e][i] * from + (1.0f - l->rightward[e][i]) * to - l->t[i];
-                s->middle_y[e][i] = 0.5f * (from + to) - l->t[i];
-            }
-            off = 2.0f * FAR * (float)(from == to);
-            s->low[i] = lesser(s->low[i], s->left[e][i] + off);
-            s->high[i] = greater(s->high[i], s->right[e][i] - off);
-        }
-}
-
-INLINE void set_columns(const stretches *restrict s, gnoi_filter_lane_row *restrict out)
-{
-    int most = 0;
-    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
-        float some = (float)(s->low[i] <= s->high[i]);
-        out->first[i] = floor_of(some * s->low[i]);
-        out->columns[i] = ((int)(floor_of(some * s->high[i]) - out->first[i]) + 1) * (int)some;
-    }
-    for (int i = 0; i < GNOI_FILTER_LANES; i++)
-        most = out->columns[i] > most ? out->columns[i] : most;
-    if (most > GNOI_LANE_COLUMNS) {
-        most = GNOI_LANE_COLUMNS;
-        for (int i = 0; i < GNOI_FILTER_LANES; i++)
-            out->columns[i] = out->columns[i] < most ? out->columns[i] : most;
-    }
-    out->most = most;
-}
-
-/* Along a stretch u = max(line - x, 0) runs from `near` at its right end to near + d at its left one, the second part of it over so much
- * of its height. Left of the line, the area is the sum of heights times the mean of u; uneven, of u (1 + gain at the line) - gain_x u^2 / 2. */
-INLINE void sum_cells(const gnoi_filter_lanes *restrict l, const stretches *restrict s, int uneven, gnoi_filter_lane_row *restrict out)
-{
-    gnoi_filter_lane_values before;
-    for (int i = 0; i < GNOI_FILTER_LANES; i++)
-        before[i] = 0;
-    for (int c = 0; c < out->most; c++)
-        for (int i = 0; i < GNOI_FILTER_LANES; i++) {
-            float line = out->first[i] + (float)(c + 1), sum = 0, gain = 1.0f + l->gain_x[i] * (line - l->s[i]);
-            for (int e = 0; e < 4; e++) {
-                float height = s->height[e][i], wide = greater(line - s->left[e][i], 0.0f), near = greater(line - s->right[e][i], 0.0f);
-                float d = wide - near, over = lesser(wide * l->rise[e][i], height), part = height * near + 0.5f * d * over;
-                if (uneven) {
-                    float lean = 1.0f - 2.0f * l->rightward[e][i], square = height * near * (near + d) + d * d * over * (1.0f / 3.0f);
-                    float by_y = height * near * s->middle_y[e][i] + over * d * (0.5f * s->left_y[e][i] - over * lean * (1.0f / 6.0f));
-                    part = part * gain + by_y * l->gain_y[i] - 0.5f * square * l->gain_x[i];
-                }
-                sum += l->turn[e][i] * part;
-            }
-            out->area[c][i] = (sum - before[i]) * (float)(c < out->columns[i]);
-            before[i] = sum;
-        }
-}
-
-INLINE void cover_row(const gnoi_filter_lanes *restrict l, int row, int uneven, gnoi_filter_lane_row *restrict out)
-{
-    stretches s;
-    cut_edges(l, row, uneven, &s);
-    set_columns(&s, out);
-    sum_cells(l, &s, uneven, out);
-}
-
-VECTOR_CLONES static void row_of(const gnoi_filter_lanes *restrict l, int row, gnoi_filter_lane_row *restrict out)
+VECTOR_CLONES static void rows_of(gnoi_filter_lanes *restrict l, int first, int count, gnoi_filter_lane_row *restrict out)
 {
     if (l->uneven)
-        cover_row(l, row, 1, out);
+        cover_rows(l, first, count, 1, out);
     else
-        cover_row(l, row, 0, out);
+        cover_rows(l, first, count, 0, out);
 }
 
 void gnoi_filter_lanes_start(gnoi_filter_lanes *l)
@@ -158,7 +212,7 @@ void gnoi_filter_lanes_start(gnoi_filter_lanes *l)
     start(l);
 }
 
-void gnoi_filter_lanes_row(const gnoi_filter_lanes *restrict l, int row, gnoi_filter_lane_row *restrict out)
+void gnoi_filter_lanes_rows(gnoi_filter_lanes *restrict l, int first, int count, gnoi_filter_lane_row *restrict out)
 {
-    row_of(l, row, out);
+    rows_of(l, first, count, out);
 }

@@ -8,35 +8,43 @@
 #ifndef GNOI_PROJECT_FILTER_LANES_H
 #define GNOI_PROJECT_FILTER_LANES_H
 
+#include <stdalign.h>
+
 #define GNOI_FILTER_LANES 16
 #define GNOI_LANE_COLUMNS 64
 #define GNOI_EVEN_BEND 2e-3f /* |wx| + |wy| below which areas are taken as in proportion */
 
+#define GNOI_LANE_ALIGNMENT 64 /* one vector of lanes is one cache line */
+
 typedef float gnoi_filter_lane_values[GNOI_FILTER_LANES];
 
 typedef struct gnoi_filter_lanes {
-    gnoi_filter_lane_values s, t, sx, sy, tx, ty, wx, wy; /* given: as in gnoi_look (filter.h) */
+    alignas(GNOI_LANE_ALIGNMENT) gnoi_filter_lane_values s;
+    gnoi_filter_lane_values t, sx, sy, tx, ty, wx, wy; /* given: as in gnoi_look (filter.h) */
     int rows[GNOI_FILTER_LANES];                          /* of cells under the quadrilateral, the first of them next */
     gnoi_filter_lane_values first_row;
     gnoi_filter_lane_values x[4], y[4], end_y[4], turn[4]; /* edges from their upper end; 1 or -1: that is the first one */
-    gnoi_filter_lane_values slope[4], rise[4], rightward[4]; /* dx/dy, |dy/dx|, whether the lower end is the right one */
-    gnoi_filter_lane_values low_x, high_x;
-    int uneven;                                    /* some lane's areas in the picture change with the place, */
-    gnoi_filter_lane_values gain_x, gain_y;               /* by this share of the middle's; 0 where that is negligible */
+    gnoi_filter_lane_values slope[4], half_rise[4], rightward[4]; /* dx/dy, |dy/dx| / 2, whether the lower end is the right one */
+    gnoi_filter_lane_values low_x, high_x, first_column;
+    int columns[GNOI_FILTER_LANES];         /* under it in any row */
+    gnoi_filter_lane_values gain_x, gain_y; /* areas in the picture change with the place by this share of the middle's; 0: negligible */
+    gnoi_filter_lane_values weight;         /* sum of all areas so far */
+    int most;                               /* columns of the lane with most */
+    int uneven;                             /* some gain is not 0 */
 } gnoi_filter_lanes;
 
 /* Cells of one row, from column `first` on. Areas are those in the picture, up to a factor of the lane, which may be negative; up to column
  * `most` they are there in all lanes, 0 in those that have fewer. */
 typedef struct gnoi_filter_lane_row {
-    int columns[GNOI_FILTER_LANES], most;
+    alignas(GNOI_LANE_ALIGNMENT) gnoi_filter_lane_values area[GNOI_LANE_COLUMNS];
     gnoi_filter_lane_values first;
-    gnoi_filter_lane_values area[GNOI_LANE_COLUMNS];
+    int columns[GNOI_FILTER_LANES], most;
 } gnoi_filter_lane_row;
 
 /* Finds corners and rows. All values are finite, sx ty differs from sy tx, |wx| + |wy| < 1. */
 void gnoi_filter_lanes_start(gnoi_filter_lanes *lanes);
 
-/* Row number `row` of every lane; lanes with fewer rows get none, and a row too wide is cut short. */
-void gnoi_filter_lanes_row(const gnoi_filter_lanes *lanes, int row, gnoi_filter_lane_row *out);
+/* Rows first .. first + count - 1 of every lane; lanes with fewer rows get none, and a row too wide is cut short. */
+void gnoi_filter_lanes_rows(gnoi_filter_lanes *lanes, int first, int count, gnoi_filter_lane_row *out);
 
 #endif

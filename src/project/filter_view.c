@@ -85,7 +85,7 @@ VECTOR_CLONES static void find_looks(const gnoi_views *restrict a, int count, co
         plain[i] = (float)q->plain[i];
     for (int i = 0; i < count; i++) {
         int j = first + i;
-        float kind = (float)gnoi_look_kind(fabsf(l->sx[j]) + fabsf(l->sy[j]), fabsf(l->tx[j]) + fabsf(l->ty[j]), fabsf(l->wx[j]) + fabsf(l->wy[j]));
+        float kind = (float)gnoi_look_kind(l->s[j], l->t[j], fabsf(l->sx[j]) + fabsf(l->sy[j]), fabsf(l->tx[j]) + fabsf(l->ty[j]), fabsf(l->wx[j]) + fabsf(l->wy[j]));
         l->kind[j] = (int)(plain[i] * (kind + 1.0f)) - 1;
     }
 }

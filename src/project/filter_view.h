@@ -39,8 +39,9 @@ typedef struct gnoi_look_lanes {
     int kind[GNOI_LOOKS];                    /* gnoi_look_kind; -1: not plain */
 } gnoi_look_lanes;
 
-#define GNOI_LOOK_SIZES 12
+#define GNOI_LOOK_SIZES 13
 #define GNOI_LOOK_KINDS (2 * GNOI_LOOK_SIZES * GNOI_LOOK_SIZES)
+#define GNOI_LOOK_IN_CELL 0 /* the kind of those that lie within one cell */
 
 /* Finds the looks of `count` pixels, from place `first` on. Both are written up to the next multiple of 16. */
 void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int first);
@@ -48,19 +49,32 @@ void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int f
 static inline float gnoi_lesser(float a, float b) { return a < b ? a : b; }
 static inline float gnoi_greater(float a, float b) { return a > b ? a : b; }
 
-/* 0 .. 3: less than 4 cells; two sizes an octave from there. */
-static inline int gnoi_look_size(float extent)
+static inline float gnoi_floor(float v)
+{
+    float whole = (float)(int)v;
+    return whole - (float)(v < whole);
+}
+
+/* Cells under a stretch of an axis. */
+static inline float gnoi_look_cells(float middle, float extent)
+{
+    return gnoi_floor(middle + 0.5f * extent) - gnoi_floor(middle - 0.5f * extent) + 1.0f;
+}
+
+/* One each for up to 8 cells; two an octave from there. */
+static inline int gnoi_look_size(float cells)
 {
     union { float f; int32_t i; } large;
-    large.f = gnoi_greater(gnoi_lesser(extent, 63.0f), 4.0f);
-    return (int)gnoi_lesser(extent, 4.0f) + (large.i >> 22) - (0x40800000 >> 22);
+    large.f = gnoi_greater(gnoi_lesser(cells, 63.0f), 8.0f);
+    return (int)gnoi_lesser(cells, 8.0f) - 1 + (large.i >> 22) - (0x41000000 >> 22);
 }
 
 /* Looks of about one size go together, or many lanes would wait for few. Extents are along S and along T, `bend` is |wx| + |wy|. */
-static inline int gnoi_look_kind(float wide, float high, float bend)
+static inline int gnoi_look_kind(float s, float t, float wide, float high, float bend)
 {
-    int uneven = bend > GNOI_EVEN_BEND;
-    return (uneven * GNOI_LOOK_SIZES + gnoi_look_size(high)) * GNOI_LOOK_SIZES + gnoi_look_size(wide);
+    float columns = gnoi_look_cells(s, wide + wide * bend), rows = gnoi_look_cells(t, high + high * bend);
+    int uneven = (int)(float)(bend > GNOI_EVEN_BEND) * (int)(float)(columns * rows > 1.0f);
+    return (uneven * GNOI_LOOK_SIZES + gnoi_look_size(rows)) * GNOI_LOOK_SIZES + gnoi_look_size(columns);
 }
 
 #endif
