@@ -1,4 +1,5 @@
-/* fetch.h -- asks for a cache line before it is needed; a hint without effect on results. Place: base; knows nothing. */
+/* fetch.h -- asks for a cache line before it is needed; a hint without effect on results. Place: base; knows nothing.
+ * GCC takes a function that does nothing else for one without effect and drops its calls: it belongs into loops that do something. */
 #ifndef GNOI_BASE_FETCH_H
 #define GNOI_BASE_FETCH_H
 

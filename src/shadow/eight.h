@@ -6,6 +6,7 @@
 #ifndef GNOI_SHADOW_EIGHT_H
 #define GNOI_SHADOW_EIGHT_H
 
+#include "base/fetch.h"
 #include "shadow/frame.h"
 #include <float.h>
 #include <stdint.h>
@@ -19,6 +20,14 @@ typedef struct gnoi_eight {
     float u0[GNOI_EIGHT], u1[GNOI_EIGHT], v0[GNOI_EIGHT], v1[GNOI_EIGHT];
     float z0[GNOI_EIGHT], z1[GNOI_EIGHT]; /* nearest and farthest depth from the light */
 } gnoi_eight;
+
+/* Asks for it before it is needed. */
+static inline void gnoi_eight_fetch(const gnoi_eight *node)
+{
+    FETCH(node->u0);
+    FETCH(node->v0);
+    FETCH(node->z0);
+}
 
 static inline void gnoi_eight_clear(gnoi_eight *node)
 {

@@ -92,6 +92,13 @@ static int take_eight(parting *p, const gnoi_eight *boxes, const gnoi_held *held
     if (!make_room(p->context, p->to))
         return 0;
     before = before_mask(boxes, p->box->z0);
+    /* Children that will be looked at are asked for all at once: each is a wait of its own otherwise. */
+    for (unsigned left = p->grain.before ? mask & ~before : mask; left; left &= left - 1) {
+        const unsigned k = gnoi_lowest_bit(left);
+        const gnoi_held child = {parent.node * GNOI_TREE_FAN + k, parent.level - 1}, h = held ? held[k] : child;
+        if (h.level == 0 || side_of(boxes, k) > p->grain.side)
+            gnoi_eight_fetch(children_of(p->to->tree, h));
+    }
     for (; mask; mask &= mask - 1) {
         unsigned k = gnoi_lowest_bit(mask);
         const gnoi_held child = {parent.node * GNOI_TREE_FAN + k, parent.level - 1};

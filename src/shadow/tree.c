@@ -240,6 +240,8 @@ static int walk_node(const walk *w, int level, uint32_t node)
     unsigned mask = gnoi_eight_meet(&w->tree->nodes[w->tree->level_first[level] + node], w->box);
     if (level == 0)
         return mask == 0 || w->visit(w->user, node, mask);
+    for (unsigned left = mask; left; left &= left - 1)
+        gnoi_eight_fetch(&w->tree->nodes[w->tree->level_first[level - 1] + node * GNOI_TREE_FAN + gnoi_lowest_bit(left)]);
     for (; mask; mask &= mask - 1)
         if (!walk_node(w, level - 1, node * GNOI_TREE_FAN + gnoi_lowest_bit(mask)))
             return 0;
