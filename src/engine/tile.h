@@ -75,6 +75,7 @@ typedef struct gnoi_strip {
     float xa, xb, y; /* where they begin and end, and the height of the first, in pixels from the tile's corner */
     float per_row;   /* lines a pixel row, evenly spaced */
     uint32_t absent; /* how many of a row are not there: those that were made before */
+    uint32_t pixels; /* bit x: they pass pixel x */
 } gnoi_strip;
 
 /* A texture with holes is asked for on every line of a pixel; what it was is kept here, by polygon and pixel. */
@@ -152,6 +153,7 @@ typedef struct gnoi_tile {
     gnoi_lines lines;
     uint32_t row_line[GNOI_TILE_ROWS + 1]; /* lines of each row (apron included), by first */
     uint32_t rows_mask[GNOI_TILE_SPANS][GNOI_TILE_ROWS]; /* [k][row], bit x: some line of the 2^k rows from that row on passes pixel x */
+    uint16_t strip_at[GNOI_TILE_PIXELS];   /* by row and pixel, where some line passes it: its strip */
     int strip_count, row_strip[GNOI_TILE_ROWS], row_strip_end[GNOI_TILE_ROWS]; /* strips that hold lines of each row */
     gnoi_strip strips[GNOI_TILE_PIXELS];
     size_t line_y_capacity, bar_capacity;

@@ -123,11 +123,20 @@ static void make_items(gnoi_tile *tile, size_t first, size_t count)
     }
 }
 
-/* Items that are drawn together, and the strips that each may cross. */
+/* Lines [first,end) of one strip. */
+typedef struct range {
+    uint32_t first, end;
+} range;
+
+/* No item has more: strips do not share pixels. */
+#define MOST_RANGES GNOI_TILE_PIXELS
+
+/* Items that are drawn together, and the ranges of lines that each may show on: item i those before ranges[end[i]]. */
 typedef struct handful {
     unsigned count;
     gnoi_item *items[GNOI_LANES];
-    int strip[GNOI_LANES], strip_end[GNOI_LANES];
+    uint32_t end[GNOI_LANES], range_count;
+    range ranges[2 * MOST_RANGES];
 } handful;
 
 /* ---- which lines a polygon may show on ------------------------------------------------------------------------------ */
@@ -148,8 +157,14 @@ static void set_masks(gnoi_tile *tile)
     for (int row = 0; row < rows; row++) {
         uint32_t *mask = &tile->rows_mask[0][row];
         *mask = 0;
-        for (int s = tile->row_strip[row]; s < tile->row_strip_end[row]; s++)
-            *mask |= pixel_mask((int)tile->strips[s].xa, (int)tile->strips[s].xb);
+        for (int s = tile->row_strip[row]; s < tile->row_strip_end[row]; s++) {
+            gnoi_strip *strip = &tile->strips[s];
+            const int first = (int)strip->xa, end = (int)strip->xb;
+            strip->pixels = pixel_mask(first, end);
+            *mask |= strip->pixels;
+            for (int x = first; x < end; x++)
+                tile->strip_at[row * GNOI_TILE_W + x] = (uint16_t)s;
+        }
     }
     for (int k = 1; k < GNOI_TILE_SPANS; k++)
         for (int row = 0; row + (1 << k) <= rows; row++)
@@ -185,39 +200,21 @@ INLINE int lines_before(float f, float count)
     return n + ((float)n < f);
 }
 
-/* The strip's lines that the item may cross: [*first,*end). */
-static inline void line_range(const gnoi_strip *s, const gnoi_item *item, uint32_t *first, uint32_t *end)
+/* The strip's lines that an item from y0 to y1 may cross. */
+INLINE range line_range(const gnoi_strip *s, float y0, float y1)
 {
     const float count = (float)(s->count + s->absent);
-    uint32_t before, to;
-    *first = *end = s->first;
-    if (!(s->xa < item->x1) || !(s->xb > item->x0))
-        return;
-    before = (uint32_t)lines_before((item->y0 - s->y) * s->per_row, count);
-    to = (uint32_t)lines_before((item->y1 - s->y) * s->per_row, count);
-    *first += before > s->absent ? before - s->absent : 0;
-    *end += to < s->count ? to : s->count;
+    uint32_t first = (uint32_t)lines_before((y0 - s->y) * s->per_row, count), end = (uint32_t)lines_before((y1 - s->y) * s->per_row, count);
+    range r = {s->first + (first > s->absent ? first - s->absent : 0), s->first + (end < s->count ? end : s->count)};
+    return r;
 }
 
-/* Whether a surface no nearer than `nearest` may be seen on one of the lines [line,end). */
-static inline int is_open(const gnoi_tile *tile, float nearest, uint32_t line, uint32_t end)
+/* Whether a surface no nearer than `nearest` may be seen on one of these lines. */
+static inline int is_open(const gnoi_tile *tile, float nearest, range r)
 {
-    for (; line < end; line++)
-        if (!(tile->bar[line] > nearest))
+    for (; r.first < r.end; r.first++)
+        if (!(tile->bar[r.first] > nearest))
             return 1;
-    return 0;
-}
-
-/* Moves *strip to the first before `end` in which a line that the item may cross may show a surface no nearer than `nearest`; 0 when
- * there is none. */
-static inline int find_open(const gnoi_tile *tile, const gnoi_item *item, float nearest, int *strip, int end)
-{
-    for (; *strip < end; ++*strip) {
-        uint32_t line, line_end;
-        line_range(&tile->strips[*strip], item, &line, &line_end);
-        if (is_open(tile, nearest, line, line_end))
-            return 1;
-    }
     return 0;
 }
 
@@ -250,6 +247,7 @@ static void load_bounds(bounds *b, const gnoi_item *items, size_t count)
 /* The lines, or the rows, that items may cross, side by side: [first,end), none where they meet no line. */
 typedef struct reaches {
     int32_t first[GNOI_LANES], end[GNOI_LANES];
+    uint32_t pixels[GNOI_LANES]; /* with rows: bit x, it may be in pixel x of them */
 } reaches;
 
 /* Lines of the one strip of the base lines. */
@@ -275,6 +273,7 @@ VECTOR_CLONES static void reach_rows(reaches *restrict r, const bounds *restrict
         uint32_t pixels = (0xffffffffu >> (31 - right)) & (0xffffffffu << left);
         r->first[i] = first;
         r->end[i] = seen & pixels ? last + 1 : first;
+        r->pixels[i] = pixels;
     }
 }
 
@@ -310,11 +309,7 @@ static void set_polygon(gnoi_tile *tile, const gnoi_poly *poly)
 /* Marks where a thin polygon passes that the lines around it do not show to be hidden. */
 static void judge_thin(gnoi_tile *tile, const gnoi_item *item)
 {
-    gnoi_item around = *item;
-    int strip = 0;
-    around.y0 -= 1;
-    around.y1 += 1;
-    if (!find_open(tile, &around, item->z1, &strip, tile->strip_count))
+    if (!is_open(tile, item->z1, line_range(&tile->strips[0], item->y0 - 1, item->y1 + 1)))
         return;
     set_polygon(tile, &tile->job->scene->prepared.polys[item->poly]);
     gnoi_tile_mark_thin(tile, tile->edges, tile->edge_count);
@@ -364,7 +359,7 @@ static uint32_t polygon_slot(gnoi_tile *tile, uint32_t index)
     return gnoi_tile_new_slot(tile, l, 0, index, o->cut);
 }
 
-static void draw_polygon(gnoi_tile *tile, gnoi_item *item, int strip, int strip_end)
+static void draw_polygon(gnoi_tile *tile, gnoi_item *item, const range *ranges, uint32_t count)
 {
     gnoi_crowd many, *crowd = NULL;
     float bound;
@@ -380,29 +375,25 @@ static void draw_polygon(gnoi_tile *tile, gnoi_item *item, int strip, int strip_
         many = gnoi_crowd_make(tile->edges, tile->edge_count, tile->y0 - 1, tile->y0 + tile->height + 1);
         crowd = &many;
     }
-    for (int s = strip; s < strip_end; s++) {
-        uint32_t line, end;
-        for (line_range(&tile->strips[s], item, &line, &end); line < end; line++)
+    for (uint32_t r = 0; r < count; r++)
+        for (uint32_t line = ranges[r].first; line < ranges[r].end; line++)
             if (!(tile->bar[line] > bound))
                 draw_polygon_line(tile, item, line, crowd);
-    }
 }
 
 /* The triangle in a lane, which has a slot. */
-static void draw_triangle(gnoi_tile *tile, const gnoi_item *item, unsigned lane, int strip, int strip_end)
+static void draw_triangle(gnoi_tile *tile, const gnoi_item *item, unsigned lane, const range *ranges, uint32_t range_count)
 {
     gnoi_lanes *l = &tile->lanes;
     float bound = tile->lines.depths[item->slot].surely_before;
-    for (int s = strip; s < strip_end; s++) {
-        uint32_t line, end;
-        for (line_range(&tile->strips[s], item, &line, &end); line < end; line += GNOI_LANE_LINES) {
+    for (uint32_t r = 0; r < range_count; r++)
+        for (uint32_t line = ranges[r].first, end = ranges[r].end; line < end; line += GNOI_LANE_LINES) {
             uint32_t count = end - line < GNOI_LANE_LINES ? end - line : GNOI_LANE_LINES;
             gnoi_lanes_cross(l, lane, tile->line_y + line, count, tile->x0, GNOI_TILE_MOST);
             for (uint32_t i = 0; i < count; i++)
                 if (l->from[i] < l->to[i] && !(tile->bar[line + i] > bound))
                     draw_segment(tile, item, line + i, l->from[i], l->to[i]);
         }
-    }
 }
 
 /* Edges of the triangles among the items, and slots where they have none. */
@@ -436,25 +427,27 @@ static void set_up(gnoi_tile *tile, gnoi_item *const *items, unsigned count)
 
 static void draw_handful(gnoi_tile *tile, handful *h)
 {
+    uint32_t first = 0;
     if (h->count > 0)
         set_up(tile, h->items, h->count);
-    for (unsigned i = 0; i < h->count && !tile->failed; i++) {
+    for (unsigned i = 0; i < h->count && !tile->failed; first = h->end[i++]) {
+        const range *ranges = h->ranges + first;
+        const uint32_t count = h->end[i] - first;
         if (!h->items[i]->plain)
-            draw_polygon(tile, h->items[i], h->strip[i], h->strip_end[i]);
+            draw_polygon(tile, h->items[i], ranges, count);
         else if (h->items[i]->slot != GNOI_NONE)
-            draw_triangle(tile, h->items[i], i, h->strip[i], h->strip_end[i]);
+            draw_triangle(tile, h->items[i], i, ranges, count);
     }
-    h->count = 0;
+    h->count = h->range_count = 0;
     tile->failed |= tile->lines.failed;
 }
 
-/* Puts the item, which may show on the strips [strip,strip_end), into the handful; draws the handful when it is full. */
-static void take_item(gnoi_tile *tile, gnoi_item *item, int strip, int strip_end, handful *h)
+/* Puts the item, whose ranges were added, into the handful; draws the handful when it is full. */
+static void take_item(gnoi_tile *tile, gnoi_item *item, handful *h)
 {
-    h->strip[h->count] = strip;
-    h->strip_end[h->count] = strip_end;
+    h->end[h->count] = h->range_count;
     h->items[h->count++] = item;
-    if (h->count == GNOI_LANES)
+    if (h->count == GNOI_LANES || h->range_count > MOST_RANGES)
         draw_handful(tile, h);
 }
 
@@ -468,11 +461,30 @@ static void take_on_base(gnoi_tile *tile, gnoi_item *items, size_t count, handfu
     load_bounds(&b, items, count);
     reach_lines(&r, &b, &tile->strips[0]);
     for (size_t i = 0; i < count; i++) {
+        range lines;
         if (items[i].thin && tile->judging && items[i].x1 > 0 && items[i].x0 < (float)tile->width)
             judge_thin(tile, &items[i]);
-        if (is_open(tile, nearest_of(&items[i]), (uint32_t)r.first[i], (uint32_t)r.end[i]))
-            take_item(tile, &items[i], 0, 1, h);
+        lines.first = (uint32_t)r.first[i];
+        lines.end = (uint32_t)r.end[i];
+        if (is_open(tile, nearest_of(&items[i]), lines)) {
+            h->ranges[h->range_count++] = lines;
+            take_item(tile, &items[i], h);
+        }
     }
+}
+
+/* Adds the ranges of lines that an item of these rows and pixels may show on. */
+static inline void add_ranges(const gnoi_tile *tile, const gnoi_item *item, int row, int row_end, uint32_t pixels, handful *h)
+{
+    const float nearest = nearest_of(item);
+    for (; row < row_end; row++)
+        for (uint32_t left = tile->rows_mask[0][row] & pixels; left;) {
+            const gnoi_strip *strip = &tile->strips[tile->strip_at[row * GNOI_TILE_W + (int)gnoi_lowest_bit(left)]];
+            const range lines = line_range(strip, item->y0, item->y1);
+            left &= ~strip->pixels;
+            if (is_open(tile, nearest, lines))
+                h->ranges[h->range_count++] = lines;
+        }
 }
 
 /* The same on the strips of finer lines. */
@@ -483,13 +495,10 @@ static void take_on_strips(gnoi_tile *tile, gnoi_item *items, size_t count, hand
     load_bounds(&b, items, count);
     reach_rows(&r, &b, tile->rows_mask[0], tile->height + 2);
     for (size_t i = 0; i < count; i++) {
-        int strip, end;
-        if (r.first[i] == r.end[i])
-            continue;
-        strip = tile->row_strip[r.first[i]];
-        end = tile->row_strip_end[r.end[i] - 1];
-        if (find_open(tile, &items[i], nearest_of(&items[i]), &strip, end))
-            take_item(tile, &items[i], strip, end, h);
+        const uint32_t before = h->range_count;
+        add_ranges(tile, &items[i], r.first[i], r.end[i], r.pixels[i], h);
+        if (h->range_count > before)
+            take_item(tile, &items[i], h);
     }
 }
 
@@ -507,7 +516,7 @@ static void finish_stacks(gnoi_tile *tile)
 static void draw_range(gnoi_tile *tile, size_t first, size_t end, size_t *made)
 {
     handful h;
-    h.count = 0;
+    h.count = h.range_count = 0;
     tile->covered = 0;
     for (size_t i = first, stop; i < end && !tile->failed; i = stop) {
         stop = end - i < GNOI_LANES ? end : i + GNOI_LANES;
