@@ -3,6 +3,7 @@
  * Polygons come nearest first, GNOI_LANES at a time; one whose lines are all covered by nearer surfaces costs a look at its bounds and no
  * more. Triangles are set up side by side (scan/lanes.h), polygons of more corners and what must be cut one by one.
  */
+#include "base/bits.h"
 #include "base/fetch.h"
 #include "base/vector.h"
 #include "engine/tile.h"

@@ -1,5 +1,6 @@
 /* lines.c -- see lines.h. */
 #include "scan/lines.h"
+#include "base/bits.h"
 
 void gnoi_lines_reset(gnoi_lines *lines)
 {
@@ -29,8 +30,7 @@ void gnoi_lines_add(gnoi_lines *lines, double y, int32_t xa, int32_t xb)
     l->uncovered = xb - xa;
     l->farthest = HUGE_VALF;
     l->first = 0;
-    for (int i = 0; i < GNOI_LINE_MARKS; i++)
-        l->near[i] = 0;
+    l->marked = 0;
 }
 
 /* A new piece; when memory fails the sink, whose links lead nowhere. */
@@ -163,16 +163,28 @@ static uint32_t replace_part(gnoi_lines *lines, uint32_t line, uint32_t before, 
     return p;
 }
 
-/* The last piece that ends at or before x0, 0 when there is none. */
-static uint32_t search_from(gnoi_lines *lines, gnoi_line *l, int32_t x0)
+/* A piece that ends at or before x0, as late as marks tell; 0 when they do not. */
+static inline uint32_t find_mark(const gnoi_lines *lines, const gnoi_line *l, int32_t x0, unsigned at)
 {
-    uint32_t *mark = &l->near[(x0 >> GNOI_MARK_BITS) & (GNOI_LINE_MARKS - 1)], before = *mark, p;
-    if (before && lines->pieces[before].x1 > x0)
-        before = 0;
+    for (uint32_t left = l->marked & (0xffffffffu << at); left; left &= left - 1) {
+        uint32_t p = l->near[gnoi_lowest_bit(left)];
+        if (lines->pieces[p].x1 <= x0)
+            return p;
+    }
+    return 0;
+}
+
+/* The last piece that ends at or before x0, 0 when there is none. */
+static inline uint32_t search_from(gnoi_lines *lines, gnoi_line *l, int32_t x0)
+{
+    const unsigned at = ~(unsigned)(x0 >> GNOI_MARK_BITS) & (GNOI_LINE_MARKS - 1);
+    uint32_t before = find_mark(lines, l, x0, at), p;
     for (p = before ? lines->pieces[before].next : l->first; p && lines->pieces[p].x1 <= x0; p = lines->pieces[p].next)
         before = p;
-    if (before)
-        *mark = before;
+    if (before) {
+        l->near[at] = before;
+        l->marked |= 1u << at;
+    }
     return before;
 }
 

@@ -18,9 +18,9 @@
 #define GNOI_X_BITS 16
 #define GNOI_X_ONE 65536
 
-/* A line is searched from the last place looked at in the same stretch of 2^GNOI_MARK_BITS units. */
-#define GNOI_MARK_BITS (GNOI_X_BITS + 3)
-#define GNOI_LINE_MARKS 4
+/* A line is searched from the last place looked at in the same stretch of 2^GNOI_MARK_BITS units, or in the nearest before it. */
+#define GNOI_MARK_BITS GNOI_X_BITS
+#define GNOI_LINE_MARKS 32
 
 /* A surface's nearness over the tile and what decides when two lie on each other. */
 typedef struct gnoi_depth {
@@ -48,7 +48,8 @@ typedef struct gnoi_line {
     int32_t uncovered;
     float farthest;
     uint32_t first; /* 0: none */
-    uint32_t near[GNOI_LINE_MARKS]; /* by stretch of the line, a piece that ended before where a search there began; 0: none */
+    uint32_t marked;                /* bit i: near[i] is set */
+    uint32_t near[GNOI_LINE_MARKS]; /* from the last stretch of the line to the first, a piece that ended before where a search there began */
 } gnoi_line;
 
 typedef struct gnoi_lines {

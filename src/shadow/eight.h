@@ -6,10 +6,10 @@
 #ifndef GNOI_SHADOW_EIGHT_H
 #define GNOI_SHADOW_EIGHT_H
 
+#include "base/bits.h"
 #include "base/fetch.h"
 #include "shadow/frame.h"
 #include <float.h>
-#include <stdint.h>
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
@@ -106,30 +106,6 @@ static inline unsigned gnoi_eight_bits(const int32_t lane[GNOI_EIGHT])
         bits |= (unsigned)(lane[k] & 1) << k;
 #endif
     return bits;
-}
-
-static inline unsigned gnoi_lowest_bit_long(uint64_t mask)
-{
-#if defined(__GNUC__)
-    return (unsigned)__builtin_ctzll(mask);
-#else
-    unsigned k = 0;
-    while (!(mask >> k & 1))
-        k++;
-    return k;
-#endif
-}
-
-static inline unsigned gnoi_lowest_bit(unsigned mask)
-{
-#if defined(__GNUC__)
-    return (unsigned)__builtin_ctz(mask);
-#else
-    unsigned k = 0;
-    while (!(mask >> k & 1))
-        k++;
-    return k;
-#endif
 }
 
 #endif
