@@ -13,6 +13,7 @@
 #include <string.h>
 
 #define AHEAD 16 /* polygons */
+#define BLOCK 64 /* polygons whose records stay in the cache until they are done */
 
 /* Where a chunk stands in the arrays that it fills. */
 typedef struct place {
@@ -77,7 +78,7 @@ static size_t kept_triangles(const gnoi_preparing *w, size_t i, size_t rings, si
 static gno_status count_chunk(void *user, int worker, size_t chunk)
 {
     const gnoi_preparing *w = user;
-    gnoi_chunk sum = {0, 0, 0, 0, 0};
+    gnoi_chunk sum = {0};
     (void)worker;
     for (size_t i = chunk * GNOI_CHUNK, end = chunk_end(w, chunk); i < end; i++) {
         size_t rings, corners;
@@ -93,7 +94,7 @@ static gno_status count_chunk(void *user, int worker, size_t chunk)
 /* Counts become what is before each chunk. */
 static void sum_chunks(const gnoi_preparing *w)
 {
-    gnoi_chunk sum = {0, 0, 0, 0, 0};
+    gnoi_chunk sum = {0};
     for (size_t k = 0; k <= w->chunk_count; k++) {
         gnoi_chunk count = w->chunks[k];
         w->chunks[k] = sum;
@@ -251,19 +252,47 @@ gno_status gnoi_emit_corners(gnoi_preparing *w)
 
 /* ---- records -------------------------------------------------------------------------------------------------------- */
 
-static void set_attributes(const gno_scene *scene, size_t source, gnoi_poly *poly)
+/* A record with what polygons of an object and a material have in common. */
+typedef struct common {
+    uint32_t material, object; /* GNOI_NONE: none yet */
+    gnoi_poly record;
+} common;
+
+static void set_common(const gno_scene *scene, common *c)
 {
-    int number = scene->polygon_material[source];
-    const gno_material *material = &scene->materials[number];
-    const gnoi_object *object = &scene->objects[scene->polygon_object[source]];
+    const gno_material *material = &scene->materials[c->material];
+    const gnoi_object *object = &scene->objects[c->object];
     const double *t = material->transmission;
     unsigned shading = object->shading >= 0 ? (unsigned)object->shading : (unsigned)material->shading;
+    memset(&c->record, 0, sizeof c->record); /* its padding too: the same scene gives the same bytes */
+    c->record.triangle = GNOI_NONE;
+    c->record.ring_count = 1;
+    c->record.corner_count = 3;
+    c->record.shading = shading & 15u;
+    c->record.two_sided = material->two_sided != 0;
+    c->record.opaque = t[0] == 0 && t[1] == 0 && t[2] == 0 && !gnoi_has_holes(scene, material);
+    c->record.material = (uint16_t)c->material;
+    c->record.priority = (int16_t)object->priority;
+}
+
+/* Starts the record of polygon i as one of a triangle. Objects and materials lie by the number of the source, anywhere: where there is but
+ * one none is looked up. */
+static void start_record(const gnoi_preparing *w, size_t i, const place *at, common *c)
+{
+    const gno_scene *scene = w->scene;
+    const size_t source = source_of(w, i);
+    const uint32_t material = scene->material_count > 1 ? (uint32_t)scene->polygon_material[source] : 0;
+    const uint32_t object = scene->object_count > 1 ? (uint32_t)scene->polygon_object[source] : 0;
+    gnoi_poly *poly = &w->out->polys[i];
+    if (material != c->material || object != c->object) {
+        c->material = material;
+        c->object = object;
+        set_common(scene, c);
+    }
+    *poly = c->record;
     poly->source = (uint32_t)source;
-    poly->shading = shading & 15u;
-    poly->two_sided = material->two_sided != 0;
-    poly->opaque = t[0] == 0 && t[1] == 0 && t[2] == 0 && !gnoi_has_holes(scene, material);
-    poly->material = (uint16_t)number;
-    poly->priority = (int16_t)object->priority;
+    poly->ring = (uint32_t)at->ring;
+    poly->corner = (uint32_t)at->corner;
 }
 
 /* By the function by which the polygon was judged. */
@@ -279,20 +308,17 @@ static void set_plane(const gnoi_preparing *w, size_t i, gnoi_poly *poly)
         gnoi_measure_ring(positions, vertex, out->ring_corner[poly->ring + 1] - poly->corner, poly);
 }
 
-static gno_status emit_polygon(const gnoi_preparing *w, size_t i, place *at)
+static gno_status emit_polygon(const gnoi_preparing *w, size_t i, place *at, common *c)
 {
     gnoi_prepared *out = w->out;
     gnoi_poly *poly = &out->polys[i];
     size_t rings, corners, triangles;
-    memset(poly, 0, sizeof *poly); /* its padding too: the same scene gives the same bytes */
     count_rings(w, i, &rings, &corners);
     triangles = kept_triangles(w, i, rings, corners);
-    poly->ring = (uint32_t)at->ring;
-    poly->corner = (uint32_t)at->corner;
+    start_record(w, i, at, c);
     poly->ring_count = (uint32_t)rings & 0xffffffu;
     poly->corner_count = (uint32_t)corners;
     poly->triangle = triangles > 0 ? (uint32_t)at->triangle : GNOI_NONE;
-    set_attributes(w->scene, source_of(w, i), poly);
     set_plane(w, i, poly);
     at->ring += rings;
     at->corner += corners;
@@ -300,6 +326,25 @@ static gno_status emit_polygon(const gnoi_preparing *w, size_t i, place *at)
     return triangles == 0 ? GNO_OK
                           : gnoi_triangulate(w->scene->context, (const double(*)[3])out->positions, out->corner_vertex,
                                              out->ring_corner + poly->ring, poly->ring_count, poly->n, out->triangles + poly->triangle);
+}
+
+static gno_status emit_polygons(const gnoi_preparing *w, size_t first, size_t end, place *at, common *c)
+{
+    gno_status status = GNO_OK;
+    for (size_t i = first; i < end && !status; i++) {
+        status = emit_polygon(w, i, at, c);
+        if (gnoi_stopped_at(w->scene->context, i))
+            status = GNO_ERROR_CANCELLED;
+    }
+    return status;
+}
+
+/* The same for triangles alone. */
+static void emit_triangles(const gnoi_preparing *w, size_t first, size_t end, place *at, common *c, gnoi_triangle_sums *sums)
+{
+    for (size_t i = first; i < end; i++, at->ring++, at->corner += 3)
+        start_record(w, i, at, c);
+    gnoi_set_triangles(w->out, first, end - first, sums);
 }
 
 static int is_seam(const gnoi_prepared *out, const gnoi_poly *poly, uint32_t own)
@@ -315,22 +360,30 @@ static gno_status polygon_chunk(void *user, int worker, size_t chunk)
 {
     const gnoi_preparing *w = user;
     gnoi_prepared *out = w->out;
-    place at = start_of(&w->chunks[chunk]);
-    size_t end = chunk_end(w, chunk), seam = chunk * GNOI_CHUNK;
+    gnoi_chunk *own = &w->chunks[chunk];
+    place at = start_of(own);
+    common c;
+    size_t first = chunk * GNOI_CHUNK, end = chunk_end(w, chunk), seam = first;
     int closes = 1, opaque = 1;
     gno_status status = GNO_OK;
     (void)worker;
-    gnoi_pages_ready(out->polys + chunk * GNOI_CHUNK, (end - chunk * GNOI_CHUNK) * sizeof *out->polys);
-    for (size_t i = chunk * GNOI_CHUNK; i < end && !status; i++) {
-        status = emit_polygon(w, i, &at);
-        opaque &= out->polys[i].opaque;
-        closes &= out->polys[i].opaque && out->polys[i].two_sided && out->polys[i].ring_count == 1;
-        if (is_seam(out, &out->polys[i], out->chunk_vertex[chunk]))
-            out->seams[seam++] = (uint32_t)i;
-        if (gnoi_stopped_at(w->scene->context, i))
-            status = GNO_ERROR_CANCELLED;
+    gnoi_pages_ready(out->polys + first, (end - first) * sizeof *out->polys);
+    c.material = c.object = GNOI_NONE;
+    own->summed = out->chunk_corner[chunk] != GNOI_NONE;
+    for (size_t i = first; i < end && !status; i += BLOCK) {
+        size_t stop = end - i < BLOCK ? end : i + BLOCK;
+        if (own->summed)
+            emit_triangles(w, i, stop, &at, &c, &own->sums);
+        else
+            status = emit_polygons(w, i, stop, &at, &c);
+        for (size_t k = i; k < stop && !status; k++) {
+            opaque &= out->polys[k].opaque;
+            closes &= out->polys[k].opaque && out->polys[k].two_sided && out->polys[k].ring_count == 1;
+            if (is_seam(out, &out->polys[k], out->chunk_vertex[chunk]))
+                out->seams[seam++] = (uint32_t)k;
+        }
     }
-    w->chunks[chunk].closes = closes;
+    own->closes = closes;
     out->chunk_opaque[chunk] = (unsigned char)opaque;
     if (seam < end)
         out->seams[seam] = GNOI_NONE;

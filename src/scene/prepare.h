@@ -12,6 +12,7 @@
 #define GNOI_SCENE_PREPARE_H
 
 #include "scene/scene.h"
+#include "scene/triangles.h"
 
 /* What becomes of a source polygon. */
 typedef enum gnoi_kind {
@@ -49,6 +50,8 @@ typedef struct gnoi_chunk {
     size_t ring, corner, triangle;
     int open;   /* some smooth corner has no normal from the file */
     int closes; /* all polygons are opaque, seen from both sides and without holes */
+    int summed; /* all are triangles, and `sums` is theirs */
+    gnoi_triangle_sums sums;
 } gnoi_chunk;
 
 /* A preparation at work. What steps leave for later ones is freed at its end. */

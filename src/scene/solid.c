@@ -1,9 +1,8 @@
 /* solid.c -- the connected parts of a scene, and which are closed.
  *
  * Place in the data flow: details.c -> here -> cap.c; the shadow passes leave half the casters of a closed part away (outside.c).
- * A part is closed when the directed edges of its polygons cancel. No table of edges is needed to see it: every edge from
- * a lower to a higher vertex number adds a pseudo-random number of the pair, every edge the other way takes it away; the sum of
- * 64 bits is zero if the edges cancel, and by chance only once in 2^64 if they do not.
+ * A part is closed when the directed edges of its polygons cancel. No table of edges is needed to see it: every edge adds its number
+ * (triangles.h); the sum is zero if the edges cancel, and by chance only once in 2^64 if they do not.
  * Parts are numbered by their lowest vertices. A chunk of polygons adds what it finds of parts that begin in it where they are kept, and
  * what it finds of earlier parts to tallies of its own, which are brought together in the order of chunks.
  */
@@ -129,21 +128,6 @@ static void add_tally(tally *t, const tally *share)
     }
 }
 
-static inline uint64_t scramble(uint64_t x)
-{
-    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
-    return x ^ x >> 31;
-}
-
-/* What the edge adds to the sum. */
-static inline uint64_t edge_number(uint32_t from, uint32_t to)
-{
-    uint64_t low = from < to ? from : to, high = from < to ? to : from, h = scramble((low << 32 | high) + 0x9e3779b97f4a7c15u);
-    uint64_t sign = (uint64_t)0 - (from > to); /* minus h is ~h + 1 */
-    return from == to ? 0 : (h ^ sign) - sign;
-}
-
 /* Six times the volume of the pyramid from `base` over a polygon's outer ring, or over all its corners as one ring: only parts
  * without holes use it. */
 static double pyramid(const gnoi_prepared *prep, const uint32_t *vertex, uint32_t count, vec3 base)
@@ -162,20 +146,22 @@ static void tally_run(const gnoi_preparing *w, size_t first, size_t end, tally *
 {
     const gnoi_prepared *prep = w->out;
     const vec3 base = v3_from(prep->lower);
+    const gnoi_chunk *chunk = &w->chunks[first / GNOI_CHUNK];
     uint64_t sum = 0;
     double volume = 0;
-    for (size_t i = first; i < end; i++) {
+    int known = chunk->summed && first % GNOI_CHUNK == 0 && (end % GNOI_CHUNK == 0 || end == prep->poly_count);
+    for (size_t i = first; i < end && !known; i++) {
         uint32_t n;
-        const uint32_t *vertex = gnoi_corners_of(w->out, i, &n);
+        const uint32_t *vertex = gnoi_corners_of(prep, i, &n);
         for (uint32_t k = 0; k + 1 < n; k++)
-            sum += edge_number(vertex[k], vertex[k + 1]);
-        sum += edge_number(vertex[n - 1], vertex[0]);
+            sum += gnoi_edge_number(vertex[k], vertex[k + 1]);
+        sum += gnoi_edge_number(vertex[n - 1], vertex[0]);
         volume += pyramid(prep, vertex, n, base);
     }
-    for (size_t i = first; i < end && !w->chunks[first / GNOI_CHUNK].closes; i++)
+    for (size_t i = first; i < end && !chunk->closes; i++)
         t->open |= !prep->polys[i].opaque || !prep->polys[i].two_sided || prep->polys[i].ring_count > 1;
-    t->sum += sum;
-    t->volume += volume;
+    t->sum += known ? chunk->sums.edges : sum;
+    t->volume += known ? chunk->sums.volume : volume;
     t->first = first < t->first ? (uint32_t)first : t->first;
     t->last = (uint32_t)end - 1;
 }
@@ -300,7 +286,7 @@ static int add_seam(const finding *f, size_t from, size_t to, int open)
     t = &f->whole[vertex_solid[v]];
     t->open |= open || w == GNOI_NONE || vertex_solid[w] != vertex_solid[v];
     if (w != GNOI_NONE)
-        t->sum += edge_number(v, w);
+        t->sum += gnoi_edge_number(v, w);
     return add_joint(f, v);
 }
 
