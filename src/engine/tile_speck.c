@@ -5,6 +5,8 @@
  */
 #include "base/vector.h"
 #include "engine/tile.h"
+#include "shade/interp_lanes.h"
+#include <string.h>
 
 #define INLINE static inline __attribute__((always_inline))
 #define STEP GNOI_SPECK_STEP
@@ -21,23 +23,47 @@ static void set_plane(double *to, const gnoi_screen_plane *p)
     to[2] = p->f0;
 }
 
-/* Makes the facet of a triangle that is flat or of phong shading. */
-static void set_facet(gnoi_tile *tile, gnoi_slot *slot, gnoi_facet *facet)
+/* The facet of a flat triangle; of one of phong shading all but its normals. */
+static void set_facet(const gnoi_receiver *r, gnoi_facet *facet)
 {
-    const gnoi_receiver *r = &slot->receiver;
     vec3 g = v3_scale(v3_from(r->poly->n), r->side < 0 ? -1 : 1);
     facet->g[0] = g.x;
     facet->g[1] = g.y;
     facet->g[2] = g.z;
     facet->material = r->poly->material;
+    facet->bend = 0;
     set_plane(facet->plane[0], &r->nearness);
-    if (r->poly->shading == GNO_SHADING_PHONG)
-        gnoi_interp_seek(&slot->interp, tile->job->scene, &tile->job->view, r->poly, r->x0, r->y0);
     for (int k = 0; k < 3; k++) {
         const gnoi_screen_plane flat = {0, 0, facet->g[k]};
-        set_plane(facet->plane[k + 1], r->poly->shading == GNO_SHADING_PHONG ? &slot->interp.normal[k] : &flat);
+        set_plane(facet->plane[k + 1], &flat);
     }
-    facet->bend = r->poly->shading == GNO_SHADING_PHONG ? slot->interp.turn * tile->job->tones[facet->material].glint : 0;
+}
+
+/* Facets of phong shading whose normals are to be set together. */
+typedef struct curved {
+    unsigned count;
+    gnoi_facet *facets[GNOI_INTERP_LANES];
+    gnoi_interp_lanes lanes;
+} curved;
+
+static void bend_facets(const gnoi_tile *tile, curved *c)
+{
+    gnoi_interp_lanes_set(&c->lanes, &tile->job->view);
+    for (unsigned i = 0; i < c->count; i++) {
+        gnoi_facet *facet = c->facets[i];
+        for (int k = 0; k < 9; k++)
+            facet->plane[1 + k / 3][k % 3] = c->lanes.plane[k / 3][k % 3][i];
+        facet->bend = (float)c->lanes.turn[i] * tile->job->tones[facet->material].glint;
+    }
+    c->count = 0;
+}
+
+static void take_curved(const gnoi_tile *tile, const gnoi_poly *poly, gnoi_facet *facet, curved *c)
+{
+    gnoi_interp_lanes_load(&c->lanes, c->count, &tile->job->scene->prepared, poly->corner);
+    c->facets[c->count++] = facet;
+    if (c->count == GNOI_INTERP_LANES)
+        bend_facets(tile, c);
 }
 
 /* Whether a slot is small and asks for nothing but its plane, normals, material and whole light or none of each lamp. */
@@ -57,19 +83,24 @@ int gnoi_tile_set_facets(gnoi_tile *tile, const uint32_t *slots, size_t count)
 {
     gno_context *context = tile->lines.context;
     size_t lamps = (size_t)tile->job->lamp_count;
+    curved c;
     if (!gnoi_reserve(context, (void **)&tile->facets, &tile->facet_capacity, tile->slot_count, sizeof *tile->facets) ||
         !gnoi_reserve(context, (void **)&tile->arrives, &tile->arrive_capacity, tile->slot_count * lamps, sizeof *tile->arrives))
         return 0;
+    memset(&c, 0, sizeof c);
     for (size_t i = 0; i < count; i++) {
-        gnoi_slot *slot = &tile->slots[slots[i]];
+        const gnoi_slot *slot = &tile->slots[slots[i]];
         const gnoi_column *columns = &tile->columns[slot->first_column];
         if (!is_small(tile, slot))
             continue;
         tile->briefs[slots[i]].speckled = 1;
-        set_facet(tile, slot, &tile->facets[slots[i]]);
+        set_facet(&slot->receiver, &tile->facets[slots[i]]);
+        if (slot->receiver.poly->shading == GNO_SHADING_PHONG)
+            take_curved(tile, slot->receiver.poly, &tile->facets[slots[i]], &c);
         for (size_t j = 0; j < lamps; j++)
             tile->arrives[slots[i] * lamps + j] = columns[j].state == GNOI_COLUMN_LIT;
     }
+    bend_facets(tile, &c);
     return 1;
 }
 

@@ -7,27 +7,12 @@ static vec3 homogeneous(const gno_scene *scene, const gnoi_view *view, uint32_t 
     return v3(gnoi_form_at(&view->x, p), gnoi_form_at(&view->y, p), gnoi_form_at(&view->w, p));
 }
 
-static gnoi_screen_plane screen_plane(vec3 v)
-{
-    gnoi_screen_plane p;
-    p.fx = v.x;
-    p.fy = v.y;
-    p.f0 = v.z;
-    return p;
-}
-
 static void set_weights(gnoi_interp *interp, const gno_scene *scene, const gnoi_view *view)
 {
-    vec3 v[3], c;
-    double sign;
+    vec3 v[3];
     for (int i = 0; i < 3; i++)
         v[i] = homogeneous(scene, view, interp->corner[i]);
-    c = v3_cross(v[1], v[2]);
-    interp->scale = v3_dot(c, v[0]) / v[0].z;
-    sign = interp->scale * v[0].z < 0 ? -1 : 1;
-    interp->weight[0] = screen_plane(v3_scale(c, sign));
-    interp->weight[1] = screen_plane(v3_scale(v3_cross(v[2], v[0]), sign));
-    interp->weight[2] = screen_plane(v3_scale(v3_cross(v[0], v[1]), sign));
+    interp->scale = gnoi_interp_weigh(v, interp->weight);
 }
 
 static void set_normals(gnoi_interp *interp, const gno_scene *scene)

@@ -28,6 +28,23 @@ static inline vec3 gnoi_interp_facing(vec3 n, vec3 g)
     return v3_scale(n, (v3_dot(n, g) < 0 ? -1.0 : 1.0) / (fabs(n.x) + fabs(n.y) + fabs(n.z) + 1e-300));
 }
 
+static inline gnoi_screen_plane gnoi_interp_plane(vec3 v)
+{
+    const gnoi_screen_plane p = {v.x, v.y, v.z};
+    return p;
+}
+
+/* The weights of a triangle with corners v in homogeneous picture coordinates; returns the scale of gnoi_interp. */
+static inline double gnoi_interp_weigh(const vec3 v[3], gnoi_screen_plane weight[3])
+{
+    const vec3 c0 = v3_cross(v[1], v[2]), c1 = v3_cross(v[2], v[0]), c2 = v3_cross(v[0], v[1]);
+    const double scale = v3_dot(c0, v[0]) / v[0].z, sign = scale * v[0].z < 0 ? -1 : 1;
+    weight[0] = gnoi_interp_plane(v3_scale(c0, sign));
+    weight[1] = gnoi_interp_plane(v3_scale(c1, sign));
+    weight[2] = gnoi_interp_plane(v3_scale(c2, sign));
+    return scale;
+}
+
 /* Makes `interp` valid for picture point (x,y) of `poly`: picks the triangle that holds it, or the nearest. */
 void gnoi_interp_seek(gnoi_interp *interp, const gno_scene *scene, const gnoi_view *view, const gnoi_poly *poly, double x, double y);
 
