@@ -157,7 +157,7 @@ typedef struct gnoi_tile {
     int strip_count, row_strip[GNOI_TILE_ROWS], row_strip_end[GNOI_TILE_ROWS]; /* strips that hold lines of each row */
     gnoi_strip strips[GNOI_TILE_PIXELS];
     size_t line_y_capacity, bar_capacity;
-    double *line_y;                        /* beside the lines while polygons are drawn, and some zeros: their heights */
+    double *line_y;                        /* beside the lines once polygons are drawn, and some zeros: their heights */
     float *bar;                            /* beside the lines: what is farther is hidden on all of it; -infinity while it has gaps */
     size_t covered;                        /* on the lines before this one nothing can be seen any more of the polygons to come */
     gnoi_keyed *order, *order_scratch;     /* the bin's polygons nearest first */

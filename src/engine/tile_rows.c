@@ -75,7 +75,7 @@ static int base_line_of(const gnoi_tile *tile, int row, uint32_t line)
 /* How far below the row's middle a line runs, in pixels. */
 static float line_offset(const gnoi_tile *tile, int row, uint32_t line)
 {
-    return (float)(tile->lines.lines[line].y - (tile->y0 + row - 0.5));
+    return (float)(tile->line_y[line] - (tile->y0 + row - 0.5));
 }
 
 static inline void add_lit(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float a, float b, const double light[3], float dy, int line)
@@ -92,6 +92,13 @@ void gnoi_tile_add_lit(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float
     add_lit(tile, lamp, piece, a, b, light, dy, line);
 }
 
+/* How a lamp's shadows split pieces. */
+typedef enum way {
+    BY_INTERVALS,
+    BY_SHEET, /* at contour edges alone */
+    SOFTLY    /* its shadows weaken with distance */
+} way;
+
 /* Splits one piece by the intervals of its line and adds what is lit. */
 static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float dy, int line)
 {
@@ -106,6 +113,34 @@ static void split_piece(gnoi_tile *tile, int lamp, const gnoi_piece *piece, floa
     }
 }
 
+static inline void add_unshaded(gnoi_tile *tile, int lamp, const gnoi_piece *piece, double x0, double x1, float dy, int line)
+{
+    static const double all[3] = {1, 1, 1};
+    float a = (float)(x0 - tile->x0), b = (float)(x1 - tile->x0);
+    if (!(b - a < GNOI_LEAK_LENGTH))
+        add_lit(tile, lamp, piece, a, b, all, dy, line);
+}
+
+/* The same where contour edges alone begin and end shadows: the parts are those of gno_span_split. */
+static void split_by_sheet(gnoi_tile *tile, int lamp, const gnoi_piece *piece, float dy, int line)
+{
+    const gnoi_crossed *c = &tile->store.crossed;
+    double x = tile->x0 + (double)piece->x0 / GNOI_X_ONE, x1 = tile->x0 + (double)piece->x1 / GNOI_X_ONE, begin = -HUGE_VAL;
+    int count = c->left;
+    for (size_t i = 0; i <= c->count && begin < x1; i++) {
+        double end = i < c->count ? c->steps[i].x : HUGE_VAL;
+        if (count > 0 && begin < end && end > x) {
+            if (begin > x)
+                add_unshaded(tile, lamp, piece, x, begin, dy, line);
+            x = end;
+        }
+        begin = end;
+        count += i < c->count ? c->steps[i].step : 0;
+    }
+    if (x < x1)
+        add_unshaded(tile, lamp, piece, x, x1, dy, line);
+}
+
 int gnoi_tile_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb)
 {
     const gnoi_frame_job *job = tile->job;
@@ -115,29 +150,39 @@ int gnoi_tile_intervals(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *col
                         sizeof *tile->parts);
 }
 
-/* Splits all pieces of a slot in a row under one lamp. Pieces at one height follow each other and share their intervals. soft, a
- * constant at each call: the lamp's shadows weaken with distance. */
-static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, uint32_t chain, gnoi_column *column, int lamp, int soft)
+static int cross(gnoi_tile *tile, const gnoi_slot *slot, gnoi_column *column, int lamp, double y, int32_t xa, int32_t xb)
+{
+    const gnoi_frame_job *job = tile->job;
+    return gnoi_column_cross(job->scene, &job->view, &job->lamps[lamp], &job->casters[lamp], &slot->receiver, column, y,
+                             tile->x0 + (double)xa / GNOI_X_ONE, tile->x0 + (double)xb / GNOI_X_ONE, &tile->store);
+}
+
+/* Splits all pieces of a slot in a row under one lamp. Pieces at one height follow each other and share their intervals. how: a constant at
+ * each call. */
+static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, uint32_t chain, gnoi_column *column, int lamp, way how)
 {
     const gnoi_piece *pieces = tile->lines.pieces;
     uint32_t p = chain;
     while (p) {
-        double y = tile->lines.lines[pieces[p].line].y;
+        const double y = tile->line_y[pieces[p].line];
         int32_t xa = pieces[p].x0, xb = pieces[p].x1;
         uint32_t end = p;
-        for (; end && tile->lines.lines[pieces[end].line].y == y; end = pieces[end].chain) {
+        for (; end && tile->line_y[pieces[end].line] == y; end = pieces[end].chain) {
             xa = pieces[end].x0 < xa ? pieces[end].x0 : xa;
             xb = pieces[end].x1 > xb ? pieces[end].x1 : xb;
         }
-        if (!gnoi_tile_intervals(tile, slot, column, lamp, y, xa, xb) || gnoi_stopped_at(tile->lines.context, tile->steps++)) {
+        if (!(how == BY_SHEET ? cross(tile, slot, column, lamp, y, xa, xb) : gnoi_tile_intervals(tile, slot, column, lamp, y, xa, xb)) ||
+            gnoi_stopped_at(tile->lines.context, tile->steps++)) {
             tile->failed = 1;
             return;
         }
         for (; p != end; p = pieces[p].chain) {
             float dy = line_offset(tile, row, pieces[p].line);
             int line = base_line_of(tile, row, pieces[p].line);
-            if (soft)
+            if (how == SOFTLY)
                 gnoi_tile_split_soft(tile, lamp, slot, &pieces[p], dy, line);
+            else if (how == BY_SHEET)
+                split_by_sheet(tile, lamp, &pieces[p], dy, line);
             else
                 split_piece(tile, lamp, &pieces[p], dy, line);
         }
@@ -146,10 +191,13 @@ static inline void split_row(gnoi_tile *tile, int row, const gnoi_slot *slot, ui
 
 static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, uint32_t chain, gnoi_column *column, int lamp)
 {
-    if (tile->job->lamps[lamp].softness > 0)
-        split_row(tile, row, slot, chain, column, lamp, 1);
+    const gnoi_lamp *l = &tile->job->lamps[lamp];
+    if (l->softness > 0)
+        split_row(tile, row, slot, chain, column, lamp, SOFTLY);
+    else if (gnoi_column_is_sheet(l, column))
+        split_row(tile, row, slot, chain, column, lamp, BY_SHEET);
     else
-        split_row(tile, row, slot, chain, column, lamp, 0);
+        split_row(tile, row, slot, chain, column, lamp, BY_INTERVALS);
 }
 
 static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)

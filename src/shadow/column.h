@@ -138,6 +138,15 @@ int gnoi_columns_finish(const gnoi_view *view, const gnoi_casters *casters, gnoi
 int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
                           const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns);
 
+/* Whether nothing but far sides shades the column's receiver. Then it is enough to know where line y crosses their contour edges, which
+ * gnoi_column_cross finds out, to columns->crossed; arguments as above. Returns 0 when memory fails. */
+static inline int gnoi_column_is_sheet(const gnoi_lamp *lamp, const gnoi_column *column)
+{
+    return column->sheet && column->caster_count == 0 && !lamp->spot && !(lamp->softness > 0);
+}
+int gnoi_column_cross(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                      const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns);
+
 /* What a caster's shadow leaves of a lamp's light, by channel, at the receiver's point seen at (x,y), where the lamp's shadows weaken with
  * distance: 1 - s / (1 + d/D), with s what the caster keeps back and d its distance from the point along the ray. */
 void gnoi_caster_light(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_receiver *receiver, uint32_t caster,

@@ -198,8 +198,8 @@ static int add_intervals(const gnoi_crossed *now, double xa, double xb, gnoi_col
     return 1;
 }
 
-int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
-                         const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
+int gnoi_column_cross(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                      const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
 {
     const int row = gnoi_region_row(receiver, y);
     gnoi_crossed *c = &columns->crossed;
@@ -219,5 +219,12 @@ int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gn
     }
     if (!same)
         count_left(scene, view, lamp, casters, receiver, column, y, xa, xb, columns);
-    return add_intervals(c, xa, xb, columns);
+    return 1;
+}
+
+int gnoi_sheet_intervals(const gno_scene *scene, const gnoi_view *view, const gnoi_lamp *lamp, const gnoi_casters *casters,
+                         const gnoi_receiver *receiver, gnoi_column *column, double y, double xa, double xb, gnoi_columns *columns)
+{
+    return gnoi_column_cross(scene, view, lamp, casters, receiver, column, y, xa, xb, columns) &&
+           add_intervals(&columns->crossed, xa, xb, columns);
 }
