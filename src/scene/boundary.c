@@ -68,11 +68,24 @@ static int is_inner(const finding *f, uint32_t low, uint32_t other)
     return f->sums && f->sums[low] == 0;
 }
 
+/* 1 when no edge of the polygon can lie on the boundary: most have no two corners that may. */
+static int is_far_inside(const finding *f, const uint32_t *corner, uint32_t count)
+{
+    unsigned some = 0;
+    if (!f->may_bound)
+        return 0;
+    for (uint32_t k = 0; k < count; k++)
+        some += f->may_bound[corner[k]];
+    return some < 2;
+}
+
 /* Lists those edges of polygon i that are not known to cancel; 0 without memory. */
 static int list_edges(finding *f, size_t i)
 {
     uint32_t count;
     const uint32_t *corner = corners_of(f, i, &count);
+    if (is_far_inside(f, corner, count))
+        return 1;
     for (uint32_t k = 0; k < count; k++) {
         uint32_t v = corner[k], w = corner[k + 1 < count ? k + 1 : 0], low = v < w ? v : w;
         half_edge *h;

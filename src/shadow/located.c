@@ -18,15 +18,24 @@ static void locate_on_plane(const gnoi_frame *frame, const double (*restrict pos
     }
 }
 
-static void locate_on_cube(const gnoi_frame *frame, const double (*positions)[3], size_t count, gnoi_located *located)
+/* As gnoi_frame_locate does it for one point, without a branch: what it finds depends on the point's largest coordinate. */
+VECTOR_CLONES
+static void locate_on_cube(const gnoi_frame *frame, const double (*restrict positions)[3], size_t count, gnoi_located *restrict located)
 {
+    const double x0 = frame->origin.x, y0 = frame->origin.y, z0 = frame->origin.z;
     for (size_t i = 0; i < count; i++) {
-        const vec3 p = v3_from(positions[i]);
-        gnoi_lpoint l = {0, 0, 1};
-        located[i].face = gnoi_frame_locate(frame, &p, 1, &l) ? gnoi_frame_face(frame, l.u) : GNOI_NO_FACE;
-        located[i].u = (float)l.u;
-        located[i].v = (float)l.v;
-        located[i].z = (float)(1 / l.q);
+        const double x = positions[i][0] - x0, y = positions[i][1] - y0, z = positions[i][2] - z0;
+        const double ax = fabs(x), ay = fabs(y), az = fabs(z), yz = ay >= az ? ay : az;
+        const int on_x = ax >= yz, on_y = ay >= az;
+        const double depth = on_x ? ax : yz, along = on_x ? x : on_y ? y : z;
+        const double across = on_x ? y : on_y ? z : x, up = on_x ? z : on_y ? x : y;
+        const double near = 1 / depth;
+        const int face = (on_x ? 0 : on_y ? 2 : 4) + (along < 0), good = depth > 0;
+        const float u = (float)(across * near + GNOI_FACE_STEP * face), v = (float)(up * near), far = (float)(1 / near);
+        located[i].u = good ? u : 0;
+        located[i].v = good ? v : 0;
+        located[i].z = good ? far : 1;
+        located[i].face = good ? face : GNOI_NO_FACE;
     }
 }
 
