@@ -3,6 +3,7 @@
 #include "base/fetch.h"
 #include "project/filter_cut.h"
 #include "project/filter_lanes.h"
+#include <math.h>
 #include <string.h>
 
 #define MOST_STEEP 0.2     /* share by which w may change from a pixel's middle to its border, or it is cut */
@@ -303,7 +304,7 @@ static int is_on_grid(gno_wrap wrap, int first, int count, int elements, int lev
 /* Whether a cell whose elements differ so much from its mean may be one of `cells` of a pixel. */
 static int is_even_enough(float spread, int cells)
 {
-    return !(spread > 0 && 1.0 / cells > gnoi_filter_most_area(BLOCK_TOLERANCE, spread));
+    return gnoi_filter_is_small(1.0 / cells, BLOCK_TOLERANCE, spread);
 }
 
 /* 1 when cells of `level` > 0 may stand for their elements: few enough, on one grid, each so small a share of the pixel, or so even, that

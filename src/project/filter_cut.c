@@ -7,6 +7,7 @@
  * halves neither element nor pattern.
  */
 #include "project/filter_cut.h"
+#include <math.h>
 
 #define CORNERS 12       /* of a part: the square's four and one for each cut by two cells' sides, a horizon and rounding */
 #define TOLERANCE 0.0015 /* aim for the error of a pixel's mean */
@@ -194,11 +195,7 @@ static double stretch_of(const filter *f, const part *a)
 
 static int is_enough(const filter *f, const part *a, double area, float spread)
 {
-    double largest;
-    if (!(spread > 0))
-        return 1;
-    largest = gnoi_filter_most_area(TOLERANCE, spread);
-    return area <= largest || (is_whole(a) && area * 3 * stretch_of(f, a) <= largest);
+    return gnoi_filter_is_small(area, TOLERANCE, spread) || (is_whole(a) && gnoi_filter_is_small(area * 3 * stretch_of(f, a), TOLERANCE, spread));
 }
 
 static void value_at(const filter *f, int level, cell s, cell t, float value[4])

@@ -8,15 +8,15 @@
 
 #include "project/pattern.h"
 #include "scene/image.h"
-#include <math.h>
 
-/* Whether a part may stand for its elements by its cell's mean. n cells like it would fill the pixel. Along an edge of the pixel
- * some sqrt(n) cells are cut, with errors of either sign and a fourth of the spread on the average; in a whole cell only
- * perspective weighs one element more than another. Solved for the area that keeps the sum within the tolerance. */
-static inline double gnoi_filter_most_area(double tolerance, float spread)
+/* Whether a part of this area may stand for its elements by its cell's mean. n cells like it would fill the pixel. Along an edge of the
+ * pixel some sqrt(n) cells are cut, with errors of either sign and a fourth of the spread on the average; in a whole cell only
+ * perspective weighs one element more than another. So area <= 2 (tolerance / spread)^(3/2) keeps the sum within the tolerance: between
+ * the exponents 4/3 (random) and 2 (edge along the elements). */
+static inline int gnoi_filter_is_small(double area, double tolerance, float spread)
 {
-    double share = tolerance / (double)spread;
-    return share * sqrt(share) * 2.0; /* between the exponents 4/3 (random) and 2 (edge along the elements) */
+    double s = (double)spread;
+    return area * area * (s * s * s) <= 4 * (tolerance * tolerance * tolerance);
 }
 
 /* The mean over the pixel; s and t in elements and w are relative to its middle. 0 where nothing of it is before the horizon. */
