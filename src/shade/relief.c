@@ -8,6 +8,7 @@
 #include "base/vector.h"
 #include "project/filter.h"
 #include <math.h>
+#include <string.h>
 
 #define INLINE static inline __attribute__((always_inline))
 
@@ -122,57 +123,184 @@ static int floor_of(double v)
     return whole - (v < whole);
 }
 
+/* Three rows of three heights, `stride` apart; the picture's own where it has them, or else `room`. */
+INLINE const float *nine_heights(const gnoi_image_level *l, gno_wrap wrap, int column, int row, float room[9], size_t *stride)
+{
+    *stride = (size_t)l->width;
+    if (column >= 0 && column + 2 < l->width && row >= 0 && row + 2 < l->height)
+        return l->height_of + (size_t)row * *stride + (size_t)column;
+    for (int j = 0; j < 3; j++) {
+        const float *from = l->height_of + (size_t)wrapped(row + j, l->height, wrap) * *stride;
+        for (int i = 0; i < 3; i++)
+            room[3 * j + i] = from[wrapped(column + i, l->width, wrap)];
+    }
+    *stride = 3;
+    return room;
+}
+
+INLINE float bend_of(float part, float h0, float h1, float h2) { return (1 - part) * (h1 - h0) + part * (h2 - h1); }
+
 /* Derivatives of the bilinear heights of one level, by S and by T, each by a difference one cell wide. */
 static void slope_at(const gnoi_image *image, const gno_texture *how, int level, double s, double t, double slope[2])
 {
     const gnoi_image_level *l = &image->level[level];
     double x = s * l->width - 1, y = t * l->height - 1;
-    int i0 = floor_of(x), j0 = floor_of(y), column[3];
+    int i0 = floor_of(x), j0 = floor_of(y);
     float a = (float)(x - i0), b = (float)(y - j0);
     int ia = a >= 0.5f, ib = b >= 0.5f; /* the middle row and column of interpolation, */
     float ha = ia ? a - 0.5f : a + 0.5f, hb = ib ? b - 0.5f : b + 0.5f; /* and the second one's weight */
-    const float *row[3];
-    float by_s[2], by_t[2];
-    if (i0 >= 0 && i0 + 2 < l->width && j0 >= 0 && j0 + 2 < l->height) {
-        for (int i = 0; i < 3; i++) {
-            column[i] = i0 + i;
-            row[i] = l->height_of + (size_t)(j0 + i) * (size_t)l->width;
-        }
-    } else {
-        for (int i = 0; i < 3; i++) {
-            column[i] = wrapped(i0 + i, l->width, how->wrap);
-            row[i] = l->height_of + (size_t)wrapped(j0 + i, l->height, how->wrap) * (size_t)l->width;
-        }
-    }
-    for (int k = 0; k < 2; k++) {
-        const float *r = row[ib + k];
-        int c = column[ia + k];
-        by_s[k] = (1 - a) * (r[column[1]] - r[column[0]]) + a * (r[column[2]] - r[column[1]]);
-        by_t[k] = (1 - b) * (row[1][c] - row[0][c]) + b * (row[2][c] - row[1][c]);
+    float room[9], by_s[2], by_t[2];
+    size_t stride;
+    const float *h = nine_heights(l, how->wrap, i0, j0, room, &stride), *row = h + (ib ? stride : 0), *column = h + ia;
+    for (int k = 0; k < 2; k++, row += stride, column++) {
+        by_s[k] = bend_of(a, row[0], row[1], row[2]);
+        by_t[k] = bend_of(b, column[0], column[stride], column[2 * stride]);
     }
     slope[0] = (double)((1 - hb) * by_s[0] + hb * by_s[1]) * l->width;
     slope[1] = (double)((1 - ha) * by_t[0] + ha * by_t[1]) * l->height;
 }
 
-/* The slope seen by a pixel of the given size, between the two levels whose cells are next to it. */
+/* The two levels whose cells are next to a pixel's size: `level` and, unless that is the last, the one above it, the latter by a share of
+ * `part`; and the place in the first pattern. */
+typedef struct mix {
+    double s, t, part;
+    int level;
+} mix;
+
+static inline mix mix_of(const gnoi_image *image, gno_wrap wrap, double s, double t, double length, double width)
+{
+    double least = length < MOST_DRAWN_OUT * width ? length : MOST_DRAWN_OUT * width;
+    double cells = least * (image->width > image->height ? image->width : image->height);
+    mix m;
+    m.level = 0;
+    while (cells > 2 && m.level + 1 < image->level_count) {
+        cells *= 0.5;
+        m.level++;
+    }
+    m.part = cells > 1 ? cells - 1 : 0;
+    m.part = m.part < 1 ? m.part : 1;
+    m.part = m.level + 1 < image->level_count ? m.part : 0;
+    m.s = home(s, wrap);
+    m.t = home(t, wrap);
+    return m;
+}
+
+INLINE double mixed(double fine, double coarse, double part)
+{
+    double between = fine + part * (coarse - fine);
+    return part < 1 ? between : coarse;
+}
+
+/* The slope seen by a pixel. */
 static void slope_of(const gnoi_image *image, const gno_texture *how, const frame *f, double slope[2])
 {
-    double length = f->length < MOST_DRAWN_OUT * f->width ? f->length : MOST_DRAWN_OUT * f->width;
-    double cells = length * (image->width > image->height ? image->width : image->height), s = home(f->s, how->wrap), t = home(f->t, how->wrap);
-    double part, coarse[2] = {0, 0};
-    int level = 0;
-    while (cells > 2 && level + 1 < image->level_count) {
-        cells *= 0.5;
-        level++;
+    mix m = mix_of(image, how->wrap, f->s, f->t, f->length, f->width);
+    double coarse[2];
+    slope_at(image, how, m.level, m.s, m.t, slope);
+    if (!(m.part > 0))
+        return;
+    slope_at(image, how, m.level + 1, m.s, m.t, coarse);
+    for (int k = 0; k < 2; k++)
+        slope[k] = mixed(slope[k], coarse[k], m.part);
+}
+
+/* ---- the same side by side ------------------------------------------------------------------------------------------------- */
+
+/* Samples between the cells of a level each: the first of three columns and rows of cells, the place from there on, and the heights. */
+typedef struct spots {
+    double wide[GNOI_RELIEF_RUN], high[GNOI_RELIEF_RUN]; /* cells of the level */
+    int column[GNOI_RELIEF_RUN], row[GNOI_RELIEF_RUN];
+    float a[GNOI_RELIEF_RUN], b[GNOI_RELIEF_RUN];
+    float height[3][3][GNOI_RELIEF_RUN];
+} spots;
+
+typedef double run_slopes[2][GNOI_RELIEF_RUN];
+
+VECTOR_CLONES static void find_spots(const double *restrict s, const double *restrict t, spots *restrict q)
+{
+    for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
+        double x = s[i] * q->wide[i] - 1, y = t[i] * q->high[i] - 1;
+        q->column[i] = floor_of(x);
+        q->row[i] = floor_of(y);
+        q->a[i] = (float)(x - q->column[i]);
+        q->b[i] = (float)(y - q->row[i]);
     }
-    part = cells > 1 ? cells - 1 : 0;
-    part = part < 1 ? part : 1;
-    if (part < 1 || level + 1 == image->level_count)
-        slope_at(image, how, level, s, t, slope);
-    if (part > 0 && level + 1 < image->level_count)
-        slope_at(image, how, level + 1, s, t, coarse);
-    for (int k = 0; k < 2 && part > 0; k++)
-        slope[k] = part < 1 ? slope[k] + part * (coarse[k] - slope[k]) : coarse[k];
+}
+
+static void fetch_heights(const gnoi_image_level *l, gno_wrap wrap, int i, spots *q)
+{
+    float room[9];
+    size_t stride;
+    const float *h = nine_heights(l, wrap, q->column[i], q->row[i], room, &stride);
+    for (int j = 0; j < 3; j++, h += stride)
+        for (int k = 0; k < 3; k++)
+            q->height[j][k][i] = h[k];
+}
+
+/* As slope_at. */
+VECTOR_CLONES static void find_slopes(const spots *restrict q, run_slopes *restrict slope)
+{
+    for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
+        float a = q->a[i], b = q->b[i], ha = a >= 0.5f ? a - 0.5f : a + 0.5f, hb = b >= 0.5f ? b - 0.5f : b + 0.5f;
+        float h[3][3], by_s[2], by_t[2];
+        for (int j = 0; j < 3; j++)
+            for (int k = 0; k < 3; k++)
+                h[j][k] = q->height[j][k][i];
+        for (int k = 0; k < 2; k++) {
+            float r0 = b >= 0.5f ? h[k + 1][0] : h[k][0], r1 = b >= 0.5f ? h[k + 1][1] : h[k][1], r2 = b >= 0.5f ? h[k + 1][2] : h[k][2];
+            float c0 = a >= 0.5f ? h[0][k + 1] : h[0][k], c1 = a >= 0.5f ? h[1][k + 1] : h[1][k], c2 = a >= 0.5f ? h[2][k + 1] : h[2][k];
+            by_s[k] = bend_of(a, r0, r1, r2);
+            by_t[k] = bend_of(b, c0, c1, c2);
+        }
+        (*slope)[0][i] = (double)((1 - hb) * by_s[0] + hb * by_s[1]) * q->wide[i];
+        (*slope)[1][i] = (double)((1 - ha) * by_t[0] + ha * by_t[1]) * q->high[i];
+    }
+}
+
+/* Slopes of one level each, `higher` above the samples' own. */
+static void level_slopes(const gnoi_image *image, gno_wrap wrap, int count, const int *level, int higher, const double *s, const double *t,
+                         run_slopes *slope)
+{
+    spots q;
+    const gnoi_image_level *l[GNOI_RELIEF_RUN];
+    for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
+        int own = level[i] + higher < image->level_count ? level[i] + higher : image->level_count - 1;
+        l[i] = &image->level[own];
+        q.wide[i] = l[i]->width;
+        q.high[i] = l[i]->height;
+    }
+    find_spots(s, t, &q);
+    if (count < GNOI_RELIEF_RUN)
+        memset(q.height, 0, sizeof q.height);
+    for (int i = 0; i < count; i++)
+        fetch_heights(l[i], wrap, i, &q);
+    find_slopes(&q, slope);
+}
+
+/* The slopes seen by `count` pixels; numbers of no meaning beyond. */
+static void slopes_of(const gnoi_image *image, gno_wrap wrap, const frames *f, int count, run_slopes *slope)
+{
+    double s[GNOI_RELIEF_RUN], t[GNOI_RELIEF_RUN], part[GNOI_RELIEF_RUN];
+    int level[GNOI_RELIEF_RUN], is_mixed = 0;
+    run_slopes coarse;
+    for (int i = 0; i < count; i++) {
+        mix m = mix_of(image, wrap, f->s[i], f->t[i], f->length[i], f->width[i]);
+        s[i] = m.s, t[i] = m.t;
+        part[i] = m.part;
+        level[i] = m.level;
+        is_mixed |= m.part > 0;
+    }
+    for (int i = count; i < GNOI_RELIEF_RUN; i++) {
+        s[i] = t[i] = part[i] = 0;
+        level[i] = 0;
+    }
+    level_slopes(image, wrap, count, level, 0, s, t, slope);
+    if (!is_mixed)
+        return;
+    level_slopes(image, wrap, count, level, 1, s, t, &coarse);
+    for (int k = 0; k < 2; k++)
+        for (int i = 0; i < GNOI_RELIEF_RUN; i++)
+            (*slope)[k][i] = part[i] > 0 ? mixed((*slope)[k][i], coarse[k][i], part[i]) : (*slope)[k][i];
 }
 
 INLINE vec3 raise_by(double amount, vec3 qx, vec3 qy, double by_s, double by_t, vec3 n)
@@ -207,7 +335,7 @@ int gnoi_relief_run(const gnoi_sight *sight, const gno_bump *bump, const gnoi_pa
 {
     const gnoi_image *image = &sight->scene->images[bump->texture.image];
     frames q;
-    double slope[2][GNOI_RELIEF_RUN] = {{0}};
+    run_slopes slope;
     int good = 1;
     if (sight->view->orthographic)
         find_far_frames(sight->view, sight->nearness, pattern, x, y, &q);
@@ -215,16 +343,10 @@ int gnoi_relief_run(const gnoi_sight *sight, const gno_bump *bump, const gnoi_pa
         find_near_frames(sight->view, sight->nearness, pattern, x, y, &q);
     for (int i = 0; i < count; i++)
         good &= q.good[i] > 0;
-    for (int i = 0; i < count && good; i++) {
-        double own[2];
-        frame f;
-        f.s = q.s[i], f.t = q.t[i];
-        f.length = q.length[i], f.width = q.width[i];
-        slope_of(image, &bump->texture, &f, own);
-        slope[0][i] = own[0], slope[1][i] = own[1];
-    }
-    if (good)
+    if (good) {
+        slopes_of(image, bump->texture.wrap, &q, count, &slope);
         raise_all(bump->amount, &q, (const double(*)[GNOI_RELIEF_RUN])slope, n);
+    }
     return good;
 }
 
