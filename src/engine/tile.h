@@ -319,8 +319,11 @@ int gnoi_tile_base_line(const gnoi_tile *tile, int row, uint32_t line);
  * in tile->lit and tile->lit_colour. Of `columns`, one for each lamp, only the state is read. */
 void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int pixel);
 
-/* tile_run.c: the samples of all pixels from `first` to `last`, each covered by the surface, as gnoi_tile_sample_pixel makes them; 0 when the
- * surface, its columns or the tile ask for more than it can do, and nothing is done. */
+/* 1 when a lamp that has to be split reaches all of the surface in a pixel unhindered; all: what the eye would get of light 1. */
+int gnoi_tile_reaches_all(const gnoi_tile *tile, int lamp, int pixel, float cover, const float all[3]);
+
+/* tile_run.c: the samples of all pixels from `first` to `last` that the surface covers, as gnoi_tile_sample_pixel makes them; 0 when the
+ * surface is not one for that, and nothing is done. */
 int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last);
 
 /* tile_speck.c: facets of those among new slots, whose columns are known, that are small and ask for nothing else; returns 0 when memory fails.

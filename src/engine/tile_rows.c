@@ -209,8 +209,7 @@ static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
         gnoi_tinted_lines_clear(&tile->lit_veil[lamp], first, last);
 }
 
-/* 1 when a lamp that has to be split reaches all of the surface in a pixel unhindered; all: what the eye would get of light 1. */
-static int reaches_all(const gnoi_tile *tile, int lamp, int pixel, float cover, const float all[3])
+int gnoi_tile_reaches_all(const gnoi_tile *tile, int lamp, int pixel, float cover, const float all[3])
 {
     int whole = tile->lit[lamp].length[pixel] > cover * 0.999999f;
     for (int k = 0; k < 3; k++)
@@ -244,7 +243,7 @@ void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column 
     for (int j = 0; j < lamps; j++) {
         float w = columns[j].state == GNOI_COLUMN_LIT ? cover : 0;
         if (columns[j].state == GNOI_COLUMN_SPLIT) {
-            int whole = reaches_all(tile, j, pixel, cover, all);
+            int whole = gnoi_tile_reaches_all(tile, j, pixel, cover, all);
             w = whole ? cover : 0;
             parts += !whole && tile->lit[j].length[pixel] > 0;
         }
@@ -252,7 +251,7 @@ void gnoi_tile_sample_pixel(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column 
     }
     gnoi_tile_sample(tile, slot, row, pixel, &tile->cells, NULL);
     for (int j = 0; j < lamps && parts; j++)
-        if (columns[j].state == GNOI_COLUMN_SPLIT && tile->lit[j].length[pixel] > 0 && !reaches_all(tile, j, pixel, cover, all)) {
+        if (columns[j].state == GNOI_COLUMN_SPLIT && tile->lit[j].length[pixel] > 0 && !gnoi_tile_reaches_all(tile, j, pixel, cover, all)) {
             sample_lit(tile, slot, row, pixel, j);
             parts--;
         }

@@ -1,7 +1,7 @@
 /* tile_run.c -- samples of a surface in neighbouring pixels, set up side by side by vector code: see tile.h.
  *
  * The numbers are those of gnoi_tile_sample, bit by bit, which serves all that is rarer: procedural textures and those with holes, tints,
- * intensities taken once, highlights that bend within a pixel, lamps that reach a part of one.
+ * intensities taken once, highlights that bend within a pixel; and, among other pixels, those of which a lamp reaches a part.
  */
 #include "base/vector.h"
 #include "engine/tile.h"
@@ -112,7 +112,7 @@ VECTOR_CLONES static void set_far(gnoi_batch *restrict b, int at, const gnoi_cel
 }
 
 /* What arrives of the lamps, which pixels the samples are of, and their coverage by line. */
-static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int first, int at)
+static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int first, int count, int at)
 {
     gnoi_batch *b = &tile->batch;
     const float *length = tile->cells.length + first;
@@ -120,6 +120,8 @@ static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int f
         float lit = columns[j].state == GNOI_COLUMN_LIT ? 1 : 0, *weight = b->weight + (size_t)j * GNOI_BATCH + at;
         for (int i = 0; i < STEP; i++)
             weight[i] = lit * length[i];
+        for (int i = 0; i < count && columns[j].state == GNOI_COLUMN_SPLIT; i++)
+            weight[i] = tile->lit[j].length[first + i] > 0 ? length[i] : 0;
     }
     for (int i = 0; i < STEP; i++)
         b->tag[at + i] = (uint32_t)(row * GNOI_TILE_W + first + i);
@@ -178,16 +180,26 @@ static void set_details(gnoi_tile *tile, gnoi_slot *slot, const common *c, int r
 }
 
 /* Whether the surface is one for this file. */
-static int is_plain(const gnoi_tile *tile, const gnoi_slot *slot, const gnoi_column *columns)
+static int is_plain(const gnoi_tile *tile, const gnoi_slot *slot)
 {
     const gnoi_poly *poly = slot->receiver.poly;
     const gnoi_tone *tone = &tile->job->tones[poly->material];
     int plain = (poly->shading == GNO_SHADING_FLAT || poly->shading == GNO_SHADING_PHONG) && !tile->tinted && !tile->veiled;
     if (tone->textured)
         plain &= tile->job->scene->materials[poly->material].texture.kind == GNO_TEXTURE_IMAGE && !tone->has_holes;
-    for (int j = 0; j < tile->job->lamp_count; j++)
-        plain &= columns[j].state != GNOI_COLUMN_SPLIT;
     return plain;
+}
+
+/* Whether every lamp reaches all or nothing of what is seen of the surface in a pixel. */
+static int is_whole(const gnoi_tile *tile, const gnoi_column *columns, int pixel)
+{
+    float cover = tile->cells.length[pixel];
+    const float all[3] = {cover, cover, cover};
+    int whole = cover > 0;
+    for (int j = 0; j < tile->job->lamp_count && whole; j++)
+        if (columns[j].state == GNOI_COLUMN_SPLIT && tile->lit[j].length[pixel] > 0)
+            whole = gnoi_tile_reaches_all(tile, j, pixel, cover, all);
+    return whole;
 }
 
 /* Makes the slot's interpolation valid from one pixel to another; 0 when no one triangle of the polygon holds both samples. */
@@ -207,39 +219,53 @@ static int seek(gnoi_tile *tile, gnoi_slot *slot, const common *c, int first, in
     return 1;
 }
 
-int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last)
+/* Pixels that are whole; 0 when they are better taken one by one. */
+static int sample_whole(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, const common *c, int row, int first, int last)
 {
     const gnoi_frame_job *job = tile->job;
-    const gnoi_poly *poly = slot->receiver.poly;
     gnoi_batch *b = &tile->batch;
-    common c;
-    if (last - first + 1 < LEAST_RUN || !is_plain(tile, slot, columns))
-        return 0;
-    c.x0 = tile->x0 + 0.5;
-    c.y0 = tile->y0 + row - 0.5;
-    c.view = &job->view;
-    c.nearness = &slot->receiver.nearness;
-    c.normal = poly->shading == GNO_SHADING_PHONG ? slot->interp.normal : NULL;
-    c.g = v3_scale(v3_from(poly->n), slot->receiver.side < 0 ? -1 : 1);
-    c.tone = &job->tones[poly->material];
-    for (int p = first; p <= last; p++)
-        if (!(tile->cells.length[p] > 0))
-            return 0;
-    if (c.normal && (!seek(tile, slot, &c, first, last) || gnoi_may_glint(slot, c.tone, 1)))
+    if (last - first + 1 < LEAST_RUN || (c->normal && (!seek(tile, slot, c, first, last) || gnoi_may_glint(slot, c->tone, 1))))
         return 0;
     for (int p = first; p <= last; p += STEP) {
+        int count = last - p + 1 < STEP ? last - p + 1 : STEP;
         if (b->count > GNOI_BATCH - STEP)
             gnoi_tile_flush(tile);
         if (job->view.orthographic)
-            set_far(b, b->count, &tile->cells, p, &c);
+            set_far(b, b->count, &tile->cells, p, c);
         else
-            set_near(b, b->count, &tile->cells, p, &c);
-        set_rest(tile, columns, row, p, b->count);
-        if (job->textured || c.tone->bumped)
-            set_details(tile, slot, &c, row, p, last - p + 1 < STEP ? last - p + 1 : STEP, b->count);
-        b->count += last - p + 1 < STEP ? last - p + 1 : STEP;
+            set_near(b, b->count, &tile->cells, p, c);
+        set_rest(tile, columns, row, p, count, b->count);
+        if (job->textured || c->tone->bumped)
+            set_details(tile, slot, c, row, p, count, b->count);
+        b->count += count;
     }
     if (b->count > GNOI_BATCH - GNOI_GLINT_POINTS)
         gnoi_tile_flush(tile);
+    return 1;
+}
+
+int gnoi_tile_sample_run(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *columns, int row, int first, int last)
+{
+    const gnoi_poly *poly = slot->receiver.poly;
+    common c;
+    if (last - first + 1 < LEAST_RUN || !is_plain(tile, slot))
+        return 0;
+    c.x0 = tile->x0 + 0.5;
+    c.y0 = tile->y0 + row - 0.5;
+    c.view = &tile->job->view;
+    c.nearness = &slot->receiver.nearness;
+    c.normal = poly->shading == GNO_SHADING_PHONG ? slot->interp.normal : NULL;
+    c.g = v3_scale(v3_from(poly->n), slot->receiver.side < 0 ? -1 : 1);
+    c.tone = &tile->job->tones[poly->material];
+    while (first <= last && !tile->failed) {
+        int end = first;
+        while (end <= last && is_whole(tile, columns, end))
+            end++;
+        if (end > first && sample_whole(tile, slot, columns, &c, row, first, end - 1))
+            first = end;
+        for (end += end <= last; first < end && !tile->failed; first++)
+            if (tile->cells.length[first] > 0)
+                gnoi_tile_sample_pixel(tile, slot, columns, row, first);
+    }
     return 1;
 }
