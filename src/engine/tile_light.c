@@ -17,20 +17,28 @@ static int reserve(gnoi_tile *tile)
                         sizeof *tile->columns);
 }
 
-/* Lists the slots with visible pieces whose columns are not known yet, and gives them room for columns. */
+/* Lists a slot that has a visible piece if its columns are not known yet, and gives it room for columns. */
+static inline size_t list_slot(gnoi_tile *tile, uint32_t slot, size_t count)
+{
+    if (tile->briefs[slot].lit)
+        return count;
+    tile->briefs[slot].lit = 1;
+    tile->slots[slot].first_column = (uint32_t)tile->column_count;
+    tile->column_count += (size_t)tile->job->lamp_count;
+    tile->touched[count] = slot;
+    return count + 1;
+}
+
+/* The slots of all pieces. Every piece is on its line, but where surfaces that let light through may have taken some out. */
 static size_t list_slots(gnoi_tile *tile)
 {
+    const gnoi_piece *pieces = tile->lines.pieces;
     size_t count = 0;
-    for (size_t line = 0; line < tile->lines.line_count; line++)
-        for (uint32_t p = tile->lines.lines[line].first; p; p = tile->lines.pieces[p].next) {
-            uint32_t slot = tile->lines.pieces[p].slot;
-            if (tile->briefs[slot].lit)
-                continue;
-            tile->briefs[slot].lit = 1;
-            tile->slots[slot].first_column = (uint32_t)tile->column_count;
-            tile->column_count += (size_t)tile->job->lamp_count;
-            tile->touched[count++] = slot;
-        }
+    for (size_t p = 1; p < tile->lines.piece_count && !tile->veiled; p++)
+        count = list_slot(tile, pieces[p].slot, count);
+    for (size_t line = 0; line < tile->lines.line_count && tile->veiled; line++)
+        for (uint32_t p = tile->lines.lines[line].first; p; p = pieces[p].next)
+            count = list_slot(tile, pieces[p].slot, count);
     return count;
 }
 
