@@ -4,9 +4,11 @@
  * later pass visits neighbours together and would miss the cache on each of them.
  * Polygons are sorted by the Morton number of their first corner (Morton 1966), equal ones as the caller lists them. `source` still
  * names a polygon as the caller knows it.
+ *   numbers, counted by their leading bits -> buckets by these -> each bucket by the other bits, which it is small enough for to stay in
+ *   the cache
  */
 #include "base/parallel.h"
-#include "base/sort_parallel.h"
+#include "base/sort.h"
 #include "base/vector.h"
 #include "scene/prepare.h"
 
@@ -18,13 +20,21 @@
 #define SPREAD 3          /* standard deviations that they cover */
 #define FEW_POLYGONS 1024 /* below, everything fits the cache as it is */
 #define PIECE 16384       /* vertices or polygons */
+#define LOW_BITS 10       /* of a Morton number; the others tell the bucket */
+#define LOW (1u << LOW_BITS)
+#define BUCKETS (1u << (3 * MORTON_BITS - LOW_BITS))
+#define BUCKETS_AT_ONCE 32
+#define SHORT_LIST 32     /* items sorted by insertion */
 
 typedef struct ordering {
     gnoi_preparing *w;
     double lower[3], scale; /* of the cells */
     uint32_t *place;   /* Morton number of each scene vertex; NULL: all items are equal */
-    size_t *first;     /* of each piece of polygons: where its items begin */
+    size_t pieces;     /* of polygons */
+    size_t *first;     /* of each piece: where its items begin; and one more */
     gnoi_keyed *items, *sorted;
+    uint32_t (*start)[BUCKETS]; /* of each piece: how many items of each bucket; then where the next one goes */
+    size_t *bucket;    /* where each begins, and one more */
 } ordering;
 
 static inline uint32_t cell(double t)
@@ -76,10 +86,18 @@ static size_t first_split(const gnoi_splits *splits, size_t source)
     return low;
 }
 
-static void add_item(const ordering *o, size_t *at, size_t item, size_t corner)
+/* Items of one place are in order as they are listed. */
+static inline void add_item(const ordering *o, uint32_t *counts, size_t *at, size_t item, size_t corner)
 {
-    o->items[*at].key = o->place ? o->place[o->w->scene->corner_vertex[corner]] : 0;
+    uint32_t key;
+    if (!o->place) {
+        o->w->order[(*at)++] = (uint32_t)item;
+        return;
+    }
+    key = o->place[o->w->scene->corner_vertex[corner]];
+    o->items[*at].key = key;
     o->items[(*at)++].value = (uint32_t)item;
+    counts[key >> LOW_BITS]++;
 }
 
 static size_t piece_end(const gno_scene *scene, size_t piece)
@@ -94,23 +112,26 @@ static gno_status list_piece(void *user, int worker, size_t piece)
     const gno_scene *scene = w->scene;
     const gnoi_splits *splits = &w->splits;
     size_t at = o->first[piece], t = first_split(splits, piece * PIECE);
+    uint32_t *counts = o->place ? o->start[piece] : NULL;
     (void)worker;
+    if (counts)
+        memset(counts, 0, sizeof o->start[piece]);
     for (size_t p = piece * PIECE, end = piece_end(scene, piece); p < end; p++) {
         if (gnoi_kind_of(w, p) == GNOI_KEPT)
-            add_item(o, &at, p, scene->ring_start[scene->polygon_start[p]]);
+            add_item(o, counts, &at, p, scene->ring_start[scene->polygon_start[p]]);
         for (; t < splits->count && splits->source[t] == p; t++)
             if (splits->has_area[t])
-                add_item(o, &at, scene->polygon_count + t, splits->corner[t][0]);
+                add_item(o, counts, &at, scene->polygon_count + t, splits->corner[t][0]);
     }
     return GNO_OK;
 }
 
-/* Counts items, a number for each piece becomes where it begins; returns their sum. */
-static size_t count_items(const ordering *o, size_t pieces)
+/* Finds where the items of each piece begin; returns how many there are. */
+static size_t count_items(const ordering *o)
 {
     const gnoi_preparing *w = o->w;
     size_t sum = 0, t = 0;
-    for (size_t k = 0; k < pieces; k++) {
+    for (size_t k = 0; k < o->pieces; k++) {
         size_t kept = 0, end = piece_end(w->scene, k);
         o->first[k] = sum;
         for (size_t p = k * PIECE; p < end; p++)
@@ -119,7 +140,75 @@ static size_t count_items(const ordering *o, size_t pieces)
         for (; t < w->splits.count && w->splits.source[t] < end; t++)
             sum += w->splits.has_area[t];
     }
+    o->first[o->pieces] = sum;
     return sum;
+}
+
+/* ---- sorting ------------------------------------------------------------------------------------------------------- */
+
+static void set_starts(const ordering *o)
+{
+    uint32_t sum = 0;
+    for (size_t b = 0; b < BUCKETS; b++) {
+        o->bucket[b] = sum;
+        for (size_t k = 0; k < o->pieces; k++) {
+            uint32_t n = o->start[k][b];
+            o->start[k][b] = sum;
+            sum += n;
+        }
+    }
+    o->bucket[BUCKETS] = sum;
+}
+
+static gno_status scatter_piece(void *user, int worker, size_t piece)
+{
+    const ordering *o = user;
+    uint32_t *start = o->start[piece];
+    (void)worker;
+    for (size_t i = o->first[piece]; i < o->first[piece + 1]; i++)
+        o->sorted[start[o->items[i].key >> LOW_BITS]++] = o->items[i];
+    return GNO_OK;
+}
+
+static void sort_few(gnoi_keyed *items, size_t count, uint32_t *order)
+{
+    for (size_t i = 0; i < count; i++) {
+        gnoi_keyed item = items[i];
+        size_t k = i;
+        for (; k > 0 && items[k - 1].key > item.key; k--)
+            items[k] = items[k - 1];
+        items[k] = item;
+    }
+    for (size_t i = 0; i < count; i++)
+        order[i] = items[i].value;
+}
+
+static void sort_bucket(gnoi_keyed *items, size_t count, uint32_t *order)
+{
+    uint32_t next[LOW], sum = 0;
+    if (count < SHORT_LIST) {
+        sort_few(items, count, order);
+        return;
+    }
+    memset(next, 0, sizeof next);
+    for (size_t i = 0; i < count; i++)
+        next[items[i].key & (LOW - 1)]++;
+    for (size_t d = 0; d < LOW; d++) {
+        uint32_t n = next[d];
+        next[d] = sum;
+        sum += n;
+    }
+    for (size_t i = 0; i < count; i++)
+        order[next[items[i].key & (LOW - 1)]++] = items[i].value;
+}
+
+static gno_status sort_piece(void *user, int worker, size_t piece)
+{
+    const ordering *o = user;
+    (void)worker;
+    for (size_t b = piece * BUCKETS_AT_ONCE; b < (piece + 1) * BUCKETS_AT_ONCE; b++)
+        sort_bucket(o->sorted + o->bucket[b], o->bucket[b + 1] - o->bucket[b], o->w->order + o->bucket[b]);
+    return GNO_OK;
 }
 
 /* ---- the whole ------------------------------------------------------------------------------------------------------ */
@@ -160,49 +249,52 @@ static gno_status fill_places(ordering *o)
     return gnoi_parallel(context, o->w->threads, (vertices + PIECE - 1) / PIECE, "prepare", place_piece, o);
 }
 
-static gno_status keep_piece(void *user, int worker, size_t piece)
-{
-    const ordering *o = user;
-    size_t end = (piece + 1) * PIECE < o->w->item_count ? (piece + 1) * PIECE : o->w->item_count;
-    (void)worker;
-    for (size_t i = piece * PIECE; i < end; i++)
-        o->w->order[i] = o->sorted[i].value;
-    return GNO_OK;
-}
-
 /* Lists the items, sorts them and keeps their numbers. */
-static gno_status sort_items(ordering *o, size_t pieces)
+static gno_status sort_items(ordering *o)
 {
     gnoi_preparing *w = o->w;
     gno_context *context = w->scene->context;
-    size_t count = w->item_count;
-    gno_status status = gnoi_parallel(context, w->threads, pieces, "prepare", list_piece, o);
-    o->sorted = o->items;
-    if (status == GNO_OK && o->place) {
-        o->sorted = gnoi_sort_parallel(context, w->threads, "prepare", o->items, o->items + count, count, 3 * MORTON_BITS);
-        status = o->sorted ? GNO_OK : GNO_ERROR_MEMORY;
-    }
-    return status ? status : gnoi_parallel(context, w->threads, (count + PIECE - 1) / PIECE, "prepare", keep_piece, o);
+    gno_status status = gnoi_parallel(context, w->threads, o->pieces, "prepare", list_piece, o);
+    if (status || !o->place)
+        return status;
+    set_starts(o);
+    status = gnoi_parallel(context, w->threads, o->pieces, "prepare", scatter_piece, o);
+    return status ? status : gnoi_parallel(context, w->threads, BUCKETS / BUCKETS_AT_ONCE, "prepare", sort_piece, o);
+}
+
+/* What sorting needs, unless the polygons are so few that they stay as they are. */
+static gno_status prepare_sorting(ordering *o)
+{
+    gno_context *context = o->w->scene->context;
+    const size_t count = o->w->item_count;
+    if (count < FEW_POLYGONS)
+        return GNO_OK;
+    o->items = gnoi_malloc(context, count, sizeof *o->items);
+    o->sorted = gnoi_malloc(context, count, sizeof *o->sorted);
+    o->start = gnoi_malloc(context, o->pieces, sizeof *o->start);
+    o->bucket = gnoi_malloc(context, BUCKETS + 1, sizeof *o->bucket);
+    return o->items && o->sorted && o->start && o->bucket ? fill_places(o) : GNO_ERROR_MEMORY;
 }
 
 gno_status gnoi_order_items(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
-    size_t pieces = (w->scene->polygon_count + PIECE - 1) / PIECE;
-    ordering o = {w, {0, 0, 0}, 0, NULL, NULL, NULL, NULL};
-    gno_status status = GNO_OK;
-    o.first = gnoi_malloc(context, pieces, sizeof *o.first);
-    w->item_count = o.first ? count_items(&o, pieces) : 0;
+    ordering o = {0};
+    gno_status status = GNO_ERROR_MEMORY;
+    o.w = w;
+    o.pieces = (w->scene->polygon_count + PIECE - 1) / PIECE;
+    o.first = gnoi_malloc(context, o.pieces + 1, sizeof *o.first);
+    w->item_count = o.first ? count_items(&o) : 0;
     w->order = gnoi_malloc(context, w->item_count, sizeof *w->order);
-    o.items = gnoi_malloc(context, 2 * w->item_count, sizeof *o.items);
-    if (!o.first || !w->order || !o.items)
-        status = GNO_ERROR_MEMORY;
-    if (status == GNO_OK && w->item_count >= FEW_POLYGONS)
-        status = fill_places(&o);
+    if (o.first && w->order)
+        status = prepare_sorting(&o);
     if (status == GNO_OK)
-        status = sort_items(&o, pieces);
+        status = sort_items(&o);
     gnoi_free(context, o.place, w->scene->vertex_count, sizeof *o.place);
-    gnoi_free(context, o.items, 2 * w->item_count, sizeof *o.items);
-    gnoi_free(context, o.first, pieces, sizeof *o.first);
+    gnoi_free(context, o.items, w->item_count, sizeof *o.items);
+    gnoi_free(context, o.sorted, w->item_count, sizeof *o.sorted);
+    gnoi_free(context, o.start, o.pieces, sizeof *o.start);
+    gnoi_free(context, o.bucket, BUCKETS + 1, sizeof *o.bucket);
+    gnoi_free(context, o.first, o.pieces + 1, sizeof *o.first);
     return status;
 }

@@ -1,4 +1,4 @@
-/* test_weld.c -- sorting on several threads, and which vertices lie at one place, each against the obvious way by qsort. */
+/* test_weld.c -- which vertices lie at one place, against the obvious way by qsort. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -6,7 +6,6 @@
 
 #include <cmocka.h>
 
-#include "base/sort_parallel.h"
 #include "scene/weld.h"
 #include "support/random_scene.h"
 #include "support/weld_twin.h"
@@ -15,39 +14,6 @@
 #include <string.h>
 
 static int below(uint64_t *seed, int n) { return (int)(random_unit(seed) * n); }
-
-static int by_key_then_value(const void *a, const void *b)
-{
-    const gnoi_keyed *x = a, *y = b;
-    return x->key != y->key ? (x->key < y->key ? -1 : 1) : x->value < y->value ? -1 : x->value > y->value;
-}
-
-static void test_sort(void **state)
-{
-    static const size_t counts[] = {0, 1, 1000, 131071, 131072, 300001};
-    gno_context *context;
-    uint64_t seed = 5;
-    (void)state;
-    assert_int_equal(gno_context_create(NULL, &context), GNO_OK);
-    for (size_t c = 0; c < sizeof counts / sizeof *counts; c++)
-        for (unsigned bits = 1; bits <= 32; bits += 31 / 3) {
-            size_t n = counts[c];
-            gnoi_keyed *pairs = calloc(2 * n + 1, sizeof *pairs), *twin = calloc(n + 1, sizeof *twin), *sorted;
-            assert_true(pairs && twin);
-            for (size_t i = 0; i < n; i++) {
-                pairs[i].key = (uint32_t)(random_unit(&seed) * 4294967295.0) >> (32 - bits);
-                pairs[i].value = (uint32_t)i;
-            }
-            memcpy(twin, pairs, n * sizeof *pairs);
-            qsort(twin, n, sizeof *twin, by_key_then_value);
-            sorted = gnoi_sort_parallel(context, 1 + (int)c % 3, "test", pairs, pairs + n, n, bits);
-            assert_non_null(sorted);
-            assert_memory_equal(sorted, twin, n * sizeof *pairs);
-            free(pairs);
-            free(twin);
-        }
-    gno_context_destroy(context);
-}
 
 static void test_weld(void **state)
 {
@@ -82,7 +48,6 @@ static void test_weld(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(test_sort),
         cmocka_unit_test(test_weld),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
