@@ -68,12 +68,34 @@ static void add_values(const gnoi_look *look, int l, int column, int row, const 
     }
 }
 
-static void answer(const gnoi_look *look, float share, int is_solid, const float sum[4], float weight)
+static int level_of(const gnoi_looks *looks, int look)
 {
-    float k = share / weight;
+    return look < GNOI_ASKED ? 0 : looks->part[look - GNOI_ASKED].level;
+}
+
+/* A pixel's own look is its mean; those of its parts add up to it. */
+static void answer(const gnoi_looks *looks, int which, const float sum[4], float weight)
+{
+    const gnoi_look *look = &looks->look[which];
+    int is_part = which >= GNOI_ASKED, is_solid = look->image->is_solid && level_of(looks, which) == 0;
+    float share = is_part ? looks->part[which - GNOI_ASKED].share : 1, k = share / weight;
     for (int i = 0; i < 3; i++)
-        look->mean[i] += k * sum[i];
-    look->mean[3] += is_solid ? share : k * sum[3];
+        look->mean[i] = (is_part ? look->mean[i] : 0) + k * sum[i];
+    look->mean[3] = (is_part ? look->mean[3] : 0) + (is_solid ? share : k * sum[3]);
+}
+
+/* The value of the one cell that a look lies in. */
+static void answer_in_cell(const gnoi_looks *looks, int which)
+{
+    const gnoi_look *look = &looks->look[which];
+    const gnoi_look_lanes *l = &looks->lanes;
+    int level = level_of(looks, which), wrap = look->wrap;
+    int i = wrapped(l->column[which] - (l->s[which] < 0), look->image->level[level].width, (gno_wrap)wrap);
+    int j = wrapped(l->row[which] - (l->t[which] < 0), look->image->level[level].height, (gno_wrap)wrap);
+    float value[4] = {1, 1, 1, 1};
+    if (i >= 0 && j >= 0)
+        gnoi_image_value(look->image, level, i, j, value);
+    answer(looks, which, value, 1);
 }
 
 #define ROWS 8 /* at once */
@@ -87,11 +109,6 @@ static void load(const gnoi_look_lanes *from, const unsigned short *which, int c
         to->tx[i] = from->tx[l], to->ty[i] = from->ty[l];
         to->wx[i] = from->wx[l], to->wy[i] = from->wy[l];
     }
-}
-
-static int level_of(const gnoi_looks *looks, int look)
-{
-    return look < GNOI_ASKED ? 0 : looks->part[look - GNOI_ASKED].level;
 }
 
 /* Elements lie far apart: they are on their way while areas are found. */
@@ -143,35 +160,41 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
                 add_values(l, level, column + (int)cells[r].first[i], first + r, &cells[r], i, sum[i]);
         }
     }
-    for (int i = 0; i < count; i++) {
-        float share = which[i] < GNOI_ASKED ? 1 : looks->part[which[i] - GNOI_ASKED].share;
-        answer(&looks->look[which[i]], share, looks->look[which[i]].image->is_solid && level_of(looks, which[i]) == 0, sum[i],
-               lanes.weight[i]);
-    }
+    for (int i = 0; i < count; i++)
+        answer(looks, which[i], sum[i], lanes.weight[i]);
+}
+
+static void count_kinds(const int *kind, int first, int end, int *counts)
+{
+    for (int i = first; i < end; i++)
+        counts[kind[i] + 1]++;
+}
+
+static void sort_by_kind(const int *kind, int first, int end, int *place, unsigned short *order)
+{
+    for (int i = first; i < end; i++)
+        order[place[kind[i] + 1]++] = (unsigned short)i;
 }
 
 /* Looks of one kind go together: the first `count` pixels' and then those from number GNOI_ASKED on. */
 static void answer_looks(const gnoi_looks *looks, int count)
 {
     unsigned short order[GNOI_LOOKS];
-    int place[GNOI_LOOK_KINDS] = {0}, total = 0, end = looks->end;
+    int place[GNOI_LOOK_KINDS + 1] = {0}, total = 0, first, i; /* pixels that have no look of their own come first, with kind -1 */
     const int *kind = looks->lanes.kind;
-    for (int i = 0; i < end; i++) {
-        i = i == count ? GNOI_ASKED : i;
-        if (i < end && kind[i] >= 0)
-            place[kind[i]]++;
-    }
-    for (int k = 0; k < GNOI_LOOK_KINDS; k++) {
+    count_kinds(kind, 0, count, place);
+    count_kinds(kind, GNOI_ASKED, looks->end, place);
+    first = place[0];
+    for (int k = 0; k <= GNOI_LOOK_KINDS; k++) {
         int n = place[k];
         place[k] = total;
         total += n;
     }
-    for (int i = 0; i < end; i++) {
-        i = i == count ? GNOI_ASKED : i;
-        if (i < end && kind[i] >= 0)
-            order[place[kind[i]]++] = (unsigned short)i;
-    }
-    for (int i = 0; i < total; i += GNOI_FILTER_LANES)
+    sort_by_kind(kind, 0, count, place, order);
+    sort_by_kind(kind, GNOI_ASKED, looks->end, place, order);
+    for (i = first; i < place[GNOI_LOOK_IN_CELL + 1]; i++)
+        answer_in_cell(looks, order[i]);
+    for (; i < total; i += GNOI_FILTER_LANES)
         answer_together(looks, order + i, total - i < GNOI_FILTER_LANES ? total - i : GNOI_FILTER_LANES);
 }
 
@@ -468,8 +491,8 @@ static void take(gnoi_looks *looks)
     gnoi_views_take(&looks->views, count, &looks->lanes, first);
     for (int i = 0; i < count; i++) {
         const gnoi_look *l = &looks->look[first + i];
-        l->mean[0] = l->mean[1] = l->mean[2] = l->mean[3] = 0;
         if (looks->lanes.kind[first + i] < 0) {
+            l->mean[0] = l->mean[1] = l->mean[2] = l->mean[3] = 0;
             gnoi_pattern p;
             p.s = around(v->s[i], v->sx[i], v->sy[i]);
             p.t = around(v->t[i], v->tx[i], v->ty[i]);
