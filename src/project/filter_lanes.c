@@ -5,6 +5,7 @@
 
 #define INLINE static inline __attribute__((always_inline))
 #define LEVEL_EDGE 1e-12f /* edges of less height leave no area */
+#define LEAST_WIDTH 1e-20f
 #define FAR 1e10f
 #define FEW_COLUMNS 8
 
@@ -154,6 +155,17 @@ INLINE void cover_rows(gnoi_filter_lanes *restrict l, int first, int count, int 
     }
 }
 
+/* Areas in the picture go with w^3, which is linear enough over so little. */
+INLINE void find_gains(gnoi_filter_lanes *restrict l)
+{
+    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
+        float bend = fabsf(l->wx[i]) + fabsf(l->wy[i]), uneven = (float)(bend > GNOI_EVEN_BEND);
+        float k = 3.0f * uneven / (l->sx[i] * l->ty[i] - l->sy[i] * l->tx[i]);
+        l->gain_x[i] = k * (l->wx[i] * l->ty[i] - l->wy[i] * l->tx[i]);
+        l->gain_y[i] = k * (l->wy[i] * l->sx[i] - l->wx[i] * l->sy[i]);
+    }
+}
+
 /* Clones are exported by whatever name they have unless they are static: hence the functions below. */
 VECTOR_CLONES static void start(gnoi_filter_lanes *l)
 {
@@ -175,7 +187,8 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
     l->most = set_columns(l->low_x, l->high_x, l->first_column, l->columns);
     for (int c = 0; c < 4; c++)
         for (int i = 0; i < GNOI_FILTER_LANES; i++) {
-            float x0 = x[c][i], y0 = y[c][i], x1 = x[(c + 1) & 3][i], y1 = y[(c + 1) & 3][i], down_there = (float)(y0 < y1), dx, dy, level;
+            float x0 = x[c][i], y0 = y[c][i], x1 = x[(c + 1) & 3][i], y1 = y[(c + 1) & 3][i], down_there = (float)(y0 < y1);
+            float dx, dy, level, wide, high, k;
             l->turn[c][i] = 2.0f * down_there - 1.0f;
             l->x[c][i] = down_there * x0 + (1.0f - down_there) * x1;
             l->y[c][i] = lesser(y0, y1);
@@ -183,20 +196,18 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
             dx = l->turn[c][i] * (x1 - x0);
             dy = l->end_y[c][i] - l->y[c][i];
             level = (float)(dy < LEVEL_EDGE);
-            l->slope[c][i] = (1.0f - level) * dx / (dy + level);
-            l->half_rise[c][i] = 0.5f * dy / (fabsf(dx) + 1e-30f);
+            wide = fabsf(dx) + LEAST_WIDTH;
+            high = dy + level;
+            k = 1.0f / (wide * high); /* one division for two */
+            l->slope[c][i] = (1.0f - level) * dx * (wide * k);
+            l->half_rise[c][i] = 0.5f * dy * (high * k);
             l->rightward[c][i] = (float)(dx > 0.0f);
         }
-    /* Areas in the picture go with w^3, which is linear enough over so little. */
     l->uneven = 0;
-    for (int i = 0; i < GNOI_FILTER_LANES; i++) {
-        float bend = fabsf(l->wx[i]) + fabsf(l->wy[i]), uneven = (float)(bend > GNOI_EVEN_BEND);
-        float k = 3.0f * uneven / (l->sx[i] * l->ty[i] - l->sy[i] * l->tx[i]);
-        l->gain_x[i] = k * (l->wx[i] * l->ty[i] - l->wy[i] * l->tx[i]);
-        l->gain_y[i] = k * (l->wy[i] * l->sx[i] - l->wx[i] * l->sy[i]);
-    }
     for (int i = 0; i < GNOI_FILTER_LANES; i++)
-        l->uneven |= l->gain_x[i] != 0 || l->gain_y[i] != 0;
+        l->uneven |= fabsf(l->wx[i]) + fabsf(l->wy[i]) > GNOI_EVEN_BEND;
+    if (l->uneven)
+        find_gains(l);
 }
 
 VECTOR_CLONES static void rows_of(gnoi_filter_lanes *restrict l, int first, int count, gnoi_filter_lane_row *restrict out)

@@ -27,10 +27,10 @@ typedef struct gnoi_filter_lanes {
     gnoi_filter_lane_values slope[4], half_rise[4], rightward[4]; /* dx/dy, |dy/dx| / 2, whether the lower end is the right one */
     gnoi_filter_lane_values low_x, high_x, first_column;
     int columns[GNOI_FILTER_LANES];         /* under it in any row */
-    gnoi_filter_lane_values gain_x, gain_y; /* areas in the picture change with the place by this share of the middle's; 0: negligible */
+    gnoi_filter_lane_values gain_x, gain_y; /* areas in the picture change with the place by this share of the middle's; given if uneven */
     gnoi_filter_lane_values weight;         /* sum of all areas so far */
     int most;                               /* columns of the lane with most */
-    int uneven;                             /* some gain is not 0 */
+    int uneven;                             /* some lane's areas change with the place by more than is negligible */
 } gnoi_filter_lanes;
 
 /* Cells of one row, from column `first` on. Areas are those in the picture, up to a factor of the lane, which may be negative; up to column
