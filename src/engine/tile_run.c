@@ -86,13 +86,13 @@ INLINE void set_surface(gnoi_batch *restrict b, int at, const gnoi_cells *restri
         b->coverage[at + i] = cells->length[first + i];
 }
 
-INLINE void set_samples(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c, int orthographic)
+INLINE void set_samples(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c, int orthographic,
+                        places *restrict p)
 {
-    places p;
-    set_places(&p, cells, first, c);
-    set_points(b, at, &p, c, orthographic);
+    set_places(p, cells, first, c);
+    set_points(b, at, p, c, orthographic);
     if (c->normal) {
-        set_normals(b, at, &p, c->normal, c->g);
+        set_normals(b, at, p, c->normal, c->g);
     } else {
         fill(b->nx + at, (float)c->g.x);
         fill(b->ny + at, (float)c->g.y);
@@ -101,14 +101,16 @@ INLINE void set_samples(gnoi_batch *restrict b, int at, const gnoi_cells *restri
     set_surface(b, at, cells, first, c);
 }
 
-VECTOR_CLONES static void set_near(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c)
+VECTOR_CLONES static void set_near(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c,
+                                   places *restrict p)
 {
-    set_samples(b, at, cells, first, c, 0);
+    set_samples(b, at, cells, first, c, 0, p);
 }
 
-VECTOR_CLONES static void set_far(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c)
+VECTOR_CLONES static void set_far(gnoi_batch *restrict b, int at, const gnoi_cells *restrict cells, int first, const common *restrict c,
+                                   places *restrict p)
 {
-    set_samples(b, at, cells, first, c, 1);
+    set_samples(b, at, cells, first, c, 1, p);
 }
 
 /* What arrives of the lamps, which pixels the samples are of, and their coverage by line. */
@@ -130,24 +132,34 @@ static void set_rest(gnoi_tile *tile, const gnoi_column *columns, int row, int f
             tile->cover_by_line[l][at + i] = tile->cells.by_line[l][first + i];
 }
 
-/* The normal at a sample, unit, before its bump; as in gnoi_tile_set_normal. */
-static vec3 unit_normal(const common *c, double x, double y)
+/* The normals at samples, unit, before their bumps; as in gnoi_tile_set_normal. */
+VECTOR_CLONES static void find_unit_normals(const places *restrict p, const gnoi_screen_plane *restrict normal, const vec3 *restrict facing,
+                                            double (*restrict n)[STEP])
 {
-    const gnoi_screen_plane *f = c->normal;
-    if (!f)
-        return c->g;
-    return v3_unit(gnoi_interp_facing(v3(gnoi_plane_at(&f[0], x, y), gnoi_plane_at(&f[1], x, y), gnoi_plane_at(&f[2], x, y)), c->g));
+    const gnoi_screen_plane f[3] = {normal[0], normal[1], normal[2]};
+    const vec3 g = *facing;
+    for (int i = 0; i < STEP; i++) {
+        vec3 m = v3(gnoi_plane_at(&f[0], p->x[i], p->y[i]), gnoi_plane_at(&f[1], p->x[i], p->y[i]), gnoi_plane_at(&f[2], p->x[i], p->y[i]));
+        double length, k;
+        m = gnoi_interp_facing(m, g);
+        length = v3_length(m);
+        k = length > 0 ? 1 / length : 1;
+        n[0][i] = m.x * k;
+        n[1][i] = m.y * k;
+        n[2][i] = m.z * k;
+    }
 }
 
 static void set_bumps(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, const places *p, int at)
 {
     gnoi_batch *b = &tile->batch;
     double n[3][STEP];
-    for (int i = 0; i < STEP; i++) {
-        vec3 own = i < count ? unit_normal(c, p->x[i], p->y[i]) : c->g;
-        n[0][i] = own.x;
-        n[1][i] = own.y;
-        n[2][i] = own.z;
+    if (c->normal)
+        find_unit_normals(p, c->normal, &c->g, n);
+    for (int i = 0; i < STEP && !c->normal; i++) {
+        n[0][i] = c->g.x;
+        n[1][i] = c->g.y;
+        n[2][i] = c->g.z;
     }
     if (!gnoi_tile_bump_run(tile, slot, count, p->x, p->y, n)) {
         for (int i = 0; i < count; i++)
@@ -162,21 +174,14 @@ static void set_bumps(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row
 }
 
 /* Textures and bumps. */
-static void set_details(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, int at)
+static void set_details(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, const places *p, int at)
 {
-    const gnoi_cells *cells = &tile->cells;
-    places p;
-    for (int i = 0; i < STEP; i++) {
-        int pixel = first + (i < count ? i : count - 1);
-        p.x[i] = c->x0 + pixel + (double)(cells->mx[pixel] / cells->length[pixel]);
-        p.y[i] = c->y0 + (double)(cells->my[pixel] / cells->length[pixel]);
-    }
     for (int i = 0; i < count && tile->job->textured; i++)
         gnoi_tile_note_texel(tile, at + i, c->tone, tile->texel_count + (size_t)i);
     if (c->tone->textured)
-        gnoi_tile_ask_texels(tile, slot, row, first, count, p.x, p.y);
+        gnoi_tile_ask_texels(tile, slot, row, first, count, p->x, p->y);
     if (c->tone->bumped)
-        set_bumps(tile, slot, c, row, first, count, &p, at);
+        set_bumps(tile, slot, c, row, first, count, p, at);
 }
 
 /* Whether the surface is one for this file. */
@@ -228,15 +233,16 @@ static int sample_whole(gnoi_tile *tile, gnoi_slot *slot, const gnoi_column *col
         return 0;
     for (int p = first; p <= last; p += STEP) {
         int count = last - p + 1 < STEP ? last - p + 1 : STEP;
+        places at;
         if (b->count > GNOI_BATCH - STEP)
             gnoi_tile_flush(tile);
         if (job->view.orthographic)
-            set_far(b, b->count, &tile->cells, p, c);
+            set_far(b, b->count, &tile->cells, p, c, &at);
         else
-            set_near(b, b->count, &tile->cells, p, c);
+            set_near(b, b->count, &tile->cells, p, c, &at);
         set_rest(tile, columns, row, p, count, b->count);
         if (job->textured || c->tone->bumped)
-            set_details(tile, slot, c, row, p, count, b->count);
+            set_details(tile, slot, c, row, p, count, &at, b->count);
         b->count += count;
     }
     if (b->count > GNOI_BATCH - GNOI_GLINT_POINTS)
