@@ -189,32 +189,44 @@ static void mend(gnoi_raster *r)
         if (!(r->linear[i] >= -65504.0f && r->linear[i] <= 1e30f)) r->linear[i] = 0;
 }
 
-static gno_status load(gno_scene *scene, const gnoi_texture_request *q, int *image, char reason[GNOI_TEXTURE_REASON])
+/* The pixels of a request go to t->kept, unless they are there already: a picture is often asked for as colours and as heights in turn. */
+static gno_status keep_raster(gnoi_textures *t, const gnoi_texture_request *q, size_t entry, char reason[GNOI_TEXTURE_REASON])
 {
-    gno_context *context = gno_scene_context(scene);
-    gnoi_raster r = {context, 0, 0, 0, NULL, NULL};
-    gno_status status = make_raster(&r, q, reason);
+    const gnoi_texture_entry *last = &t->entries[t->kept_entry], *now = &t->entries[entry];
+    int is_same = t->kept.bytes && last->key_size == now->key_size && memcmp(last->key + 1, now->key + 1, now->key_size - 1) == 0;
+    t->kept_entry = entry;
+    if (is_same) return GNO_OK;
+    gnoi_raster_free(&t->kept);
+    memset(&t->kept, 0, sizeof t->kept);
+    t->kept.context = gno_scene_context(t->scene);
+    return make_raster(&t->kept, q, reason);
+}
+
+static gno_status load(gnoi_textures *t, const gnoi_texture_request *q, size_t entry, int *image, char reason[GNOI_TEXTURE_REASON])
+{
+    gnoi_raster *r = &t->kept;
+    gno_status status = keep_raster(t, q, entry, reason);
     if (status == GNO_OK) {
         gno_pixels pixels;
         memset(&pixels, 0, sizeof pixels);
-        mend(&r);
-        pixels.width = r.width;
-        pixels.height = r.height;
-        pixels.channels = r.channels;
-        pixels.linear = r.linear;
-        pixels.bytes = r.bytes;
+        mend(r);
+        pixels.width = r->width;
+        pixels.height = r->height;
+        pixels.channels = r->channels;
+        pixels.linear = r->linear;
+        pixels.bytes = r->bytes;
         pixels.encoded = q->is_colour;
-        status = gno_scene_add_image(scene, &pixels, image);
+        status = gno_scene_add_image(t->scene, &pixels, image);
     }
-    gnoi_raster_free(&r);
-    if (status == GNO_ERROR_MEMORY) return gno_context_fail(context, status, "out of memory while reading a texture");
-    if (status != GNO_OK && !reason[0]) snprintf(reason, GNOI_TEXTURE_REASON, "%.390s", gno_context_message(context));
+    if (status != GNO_OK || !r->bytes) gnoi_raster_free(r);
+    if (status == GNO_ERROR_MEMORY) return gno_context_fail(r->context, status, "out of memory while reading a texture");
+    if (status != GNO_OK && !reason[0]) snprintf(reason, GNOI_TEXTURE_REASON, "%.390s", gno_context_message(r->context));
     return GNO_OK;
 }
 
 /* ---- each once ---------------------------------------------------------------------------------------------------------------- */
 
-/* Everything that tells requests apart, as text. */
+/* Everything that tells requests apart, as text; whether they are colours by its first character alone. */
 static int write_key(const gnoi_texture_request *q, char *text, size_t size)
 {
     return snprintf(text, size, "%d %d %.17g\n%s\n%s\n%s", q->is_colour, (int)q->alpha, q->limit, q->beside, q->name ? q->name : "",
@@ -260,7 +272,7 @@ gno_status gnoi_textures_get(gnoi_textures *t, const gnoi_texture_request *q, in
         if (key) gno_context_realloc(context, key, size, 0);
         return gno_context_fail(context, GNO_ERROR_MEMORY, "out of memory while reading a texture");
     }
-    gno_status status = load(t->scene, q, &entry->image, reason);
+    gno_status status = load(t, q, (size_t)(entry - t->entries), &entry->image, reason);
     *image = entry->image;
     return status;
 }
@@ -268,6 +280,7 @@ gno_status gnoi_textures_get(gnoi_textures *t, const gnoi_texture_request *q, in
 void gnoi_textures_free(gnoi_textures *t)
 {
     gno_context *context = gno_scene_context(t->scene);
+    if (t->kept.context) gnoi_raster_free(&t->kept);
     for (size_t i = 0; i < t->count; i++) gno_context_realloc(context, t->entries[i].key, t->entries[i].key_size, 0);
     if (t->entries) gno_context_realloc(context, t->entries, t->capacity * sizeof *t->entries, 0);
     t->entries = NULL;

@@ -47,6 +47,8 @@ typedef struct gnoi_textures {
     gno_scene *scene;
     struct gnoi_texture_entry *entries;
     size_t count, capacity;
+    gnoi_raster kept;  /* what was decoded last, if that was bytes, for entry kept_entry */
+    size_t kept_entry;
 } gnoi_textures;
 
 /* *image is the scene's image, or -1 where there is none; reason then says why, the first time, and is "" later.
