@@ -256,6 +256,7 @@ gno_status gnoi_emit_corners(gnoi_preparing *w)
 typedef struct common {
     uint32_t material, object; /* GNOI_NONE: none yet */
     gnoi_poly record;
+    int opaque, closes; /* of all polygons so far: what gnoi_chunk and chunk_opaque tell */
 } common;
 
 static void set_common(const gno_scene *scene, common *c)
@@ -273,6 +274,8 @@ static void set_common(const gno_scene *scene, common *c)
     c->record.opaque = t[0] == 0 && t[1] == 0 && t[2] == 0 && !gnoi_has_holes(scene, material);
     c->record.material = (uint16_t)c->material;
     c->record.priority = (int16_t)object->priority;
+    c->opaque &= c->record.opaque;
+    c->closes &= c->record.opaque && c->record.two_sided;
 }
 
 /* Starts the record of polygon i as one of a triangle. Objects and materials lie by the number of the source, anywhere: where there is but
@@ -317,6 +320,7 @@ static gno_status emit_polygon(const gnoi_preparing *w, size_t i, place *at, com
     triangles = kept_triangles(w, i, rings, corners);
     start_record(w, i, at, c);
     poly->ring_count = (uint32_t)rings & 0xffffffu;
+    c->closes &= rings == 1;
     poly->corner_count = (uint32_t)corners;
     poly->triangle = triangles > 0 ? (uint32_t)at->triangle : GNOI_NONE;
     set_plane(w, i, poly);
@@ -355,7 +359,23 @@ static int is_seam(const gnoi_prepared *out, const gnoi_poly *poly, uint32_t own
     return seam;
 }
 
-/* Seams are left where the chunk's polygons are numbered in prepared.seams, GNOI_NONE behind them. */
+/* Leaves the chunk's seams where its polygons are numbered in prepared.seams, GNOI_NONE behind them. */
+static void list_seams(gnoi_prepared *out, size_t chunk, size_t first, size_t end)
+{
+    const uint32_t own = out->chunk_vertex[chunk], from = out->chunk_corner[chunk];
+    const uint32_t *vertex = out->corner_vertex + from;
+    size_t seam = first;
+    for (size_t i = first; i < end && from == GNOI_NONE; i++)
+        if (is_seam(out, &out->polys[i], own))
+            out->seams[seam++] = (uint32_t)i;
+    for (size_t i = first; i < end && from != GNOI_NONE; i++, vertex += 3) {
+        out->seams[seam] = (uint32_t)i;
+        seam += (vertex[0] < own) | (vertex[1] < own) | (vertex[2] < own);
+    }
+    if (seam < end)
+        out->seams[seam] = GNOI_NONE;
+}
+
 static gno_status polygon_chunk(void *user, int worker, size_t chunk)
 {
     const gnoi_preparing *w = user;
@@ -363,30 +383,24 @@ static gno_status polygon_chunk(void *user, int worker, size_t chunk)
     gnoi_chunk *own = &w->chunks[chunk];
     place at = start_of(own);
     common c;
-    size_t first = chunk * GNOI_CHUNK, end = chunk_end(w, chunk), seam = first;
-    int closes = 1, opaque = 1;
+    size_t first = chunk * GNOI_CHUNK, end = chunk_end(w, chunk);
     gno_status status = GNO_OK;
     (void)worker;
-    gnoi_pages_ready(out->polys + first, (end - first) * sizeof *out->polys);
     c.material = c.object = GNOI_NONE;
+    c.opaque = c.closes = 1;
+    gnoi_pages_ready(out->polys + first, (end - first) * sizeof *out->polys);
     own->summed = out->chunk_corner[chunk] != GNOI_NONE;
-    for (size_t i = first; i < end && !status; i += BLOCK) {
-        size_t stop = end - i < BLOCK ? end : i + BLOCK;
+    for (size_t i = first, stop; i < end && !status; i = stop) {
+        stop = end - i < BLOCK ? end : i + BLOCK;
         if (own->summed)
             emit_triangles(w, i, stop, &at, &c, &own->sums);
         else
             status = emit_polygons(w, i, stop, &at, &c);
-        for (size_t k = i; k < stop && !status; k++) {
-            opaque &= out->polys[k].opaque;
-            closes &= out->polys[k].opaque && out->polys[k].two_sided && out->polys[k].ring_count == 1;
-            if (is_seam(out, &out->polys[k], out->chunk_vertex[chunk]))
-                out->seams[seam++] = (uint32_t)k;
-        }
     }
-    own->closes = closes;
-    out->chunk_opaque[chunk] = (unsigned char)opaque;
-    if (seam < end)
-        out->seams[seam] = GNOI_NONE;
+    if (status == GNO_OK)
+        list_seams(out, chunk, first, end);
+    own->closes = c.closes;
+    out->chunk_opaque[chunk] = (unsigned char)c.opaque;
     return status;
 }
 
