@@ -148,10 +148,25 @@ static size_t corner_of(const gnoi_preparing *w, size_t p)
     return block != GNOI_NONE ? block + 3 * (p % GNOI_BLOCK) : w->scene->ring_start[w->scene->polygon_start[p]];
 }
 
+/* emit_corners for GNOI_FOLLOWS. */
+static void emit_following(const gnoi_preparing *w, size_t from, size_t at)
+{
+    const uint32_t *vertex = (const uint32_t *)w->scene->corner_vertex + from;
+    uint32_t *to = w->out->corner_vertex + at, *normal = w->out->corner_normal + at;
+    for (int k = 0; k < 3; k++) {
+        normal[k] = vertex[k];
+        to[k] = w->same[vertex[k]];
+    }
+}
+
 static int emit_triangle(const gnoi_preparing *w, size_t p, place *at)
 {
     const size_t from = corner_of(w, p);
-    int open = emit_corners(w, from, from + 3, at->corner, w->kinds[p]);
+    int open = 0;
+    if ((w->kinds[p] & GNOI_FOLLOWS) && !w->out->corner_texcoord)
+        emit_following(w, from, at->corner);
+    else
+        open = emit_corners(w, from, from + 3, at->corner, w->kinds[p]);
     w->out->ring_corner[at->ring++] = (uint32_t)at->corner;
     at->corner += 3;
     return open;
@@ -176,7 +191,8 @@ static void fetch(const gnoi_preparing *w, size_t i)
     if (i < w->item_count && is_polygon(w, i, &number)) {
         size_t corner = corner_of(w, number);
         FETCH(&w->scene->corner_vertex[corner]);
-        FETCH(&w->scene->corner_normal[corner]);
+        if (!(w->kinds[number] & GNOI_FOLLOWS))
+            FETCH(&w->scene->corner_normal[corner]);
     }
 }
 

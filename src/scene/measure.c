@@ -205,6 +205,12 @@ static unsigned flags_of(const measuring *m, size_t p)
     return shading & GNOI_IS_SMOOTH ? GNOI_IS_SMOOTH | (object & GNOI_USES_NORMALS) : 0;
 }
 
+static int follows(const gno_scene *scene, unsigned from)
+{
+    const int *v = scene->corner_vertex + from, *n = scene->corner_normal + from;
+    return v[0] == n[0] && v[1] == n[1] && v[2] == n[2];
+}
+
 static void set_blocks(const measuring *m, size_t first, size_t end)
 {
     const gno_scene *scene = m->scene;
@@ -235,6 +241,8 @@ static gno_status measure_chunk(void *user, int worker, size_t piece)
         if (from + AHEAD < scene->corner_count)
             FETCH(scene->positions[scene->corner_vertex[from + AHEAD]]);
         m->kinds[p] = (unsigned char)((unsigned)kind | flags | (triangle ? GNOI_IS_TRIANGLE : 0));
+        if (triangle && (flags & GNOI_USES_NORMALS) && follows(scene, from))
+            m->kinds[p] |= GNOI_FOLLOWS;
         sums.measures.empty += kind == GNOI_EMPTY;
         sums.bent += kind == GNOI_BENT;
         sums.measures.smooth |= kind != GNOI_EMPTY && (flags & GNOI_IS_SMOOTH);

@@ -27,6 +27,7 @@ typedef enum gnoi_kind {
 #define GNOI_IS_TRIANGLE 4u  /* one ring of three corners */
 #define GNOI_IS_SMOOTH 8u
 #define GNOI_USES_NORMALS 16u /* smooth, and the object takes the file's normals where there are some */
+#define GNOI_FOLLOWS 64u /* such a triangle whose corners name normals by the numbers of their vertices: none need be looked up */
 
 typedef struct gnoi_measures {
     size_t empty, split; /* polygons of the kind */

@@ -3,6 +3,7 @@
  * Place in the data flow: prepared polygons -> their sides; vertices on the light's plane (located.h) -> boxes -> gnoi_tree_pack.
  */
 #include "base/fetch.h"
+#include "base/pages.h"
 #include "shadow/tree.h"
 #include <string.h>
 
@@ -93,6 +94,7 @@ static int collect(const gno_scene *scene, const gnoi_frame *frame, const gnoi_l
 {
     if (!gnoi_boxes_reserve(b, count + 6))
         return 0;
+    gnoi_pages_ready(b->box, count * sizeof *b->box);
     for (size_t i = 0; count > 0; i++) {
         if (sides[i] != which)
             continue;
