@@ -23,6 +23,7 @@ typedef struct gnoi_brief {
 
 typedef struct gnoi_specks {
     uint32_t first, count;
+    int lines; /* base lines kept apart, those being made: 0 while others are */
     uint32_t slot[GNOI_SPECKS + GNOI_SPECK_STEP], next[GNOI_SPECKS];
     int32_t pixel[GNOI_SPECKS + GNOI_SPECK_STEP];
     float length[GNOI_SPECKS + GNOI_SPECK_STEP], mx[GNOI_SPECKS + GNOI_SPECK_STEP], my[GNOI_SPECKS + GNOI_SPECK_STEP]; /* as in gnoi_cells */
@@ -43,7 +44,7 @@ static inline uint32_t gnoi_specks_seek(gnoi_specks *s, gnoi_brief *brief, uint3
     s->pixel[i] = pixel;
     s->next[i] = brief->speck;
     s->length[i] = s->mx[i] = s->my[i] = 0;
-    for (int l = 0; l < GNOI_BASE_LINES; l++)
+    for (int l = 0; l < s->lines; l++)
         s->by_line[l][i] = 0;
     brief->speck = s->first + i;
     return i;

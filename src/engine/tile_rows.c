@@ -8,18 +8,20 @@
 #include "engine/tile.h"
 #include <string.h>
 
-static void cells_clear(gnoi_cells *cells, int first, int last)
+/* Lengths by line are asked for while base lines are judged. */
+static void cells_clear(const gnoi_tile *tile, gnoi_cells *cells, int first, int last)
 {
+    const int lines = tile->judging ? tile->job->def.base_lines : 0;
     size_t size = (size_t)(last - first + 1) * sizeof(float);
     memset(cells->length + first, 0, size);
     memset(cells->mx + first, 0, size);
     memset(cells->my + first, 0, size);
-    for (int i = 0; i < GNOI_BASE_LINES; i++)
+    for (int i = 0; i < lines; i++)
         memset(cells->by_line[i] + first, 0, size);
 }
 
 /* Adds [a,b) within one pixel; a, b in pixels from its left side, dy from the row's middle; line: the base line, -1 another. */
-static void cells_add_part(gnoi_cells *cells, int pixel, float a, float b, float dy, int line)
+static inline void cells_add_part(gnoi_cells *cells, int pixel, float a, float b, float dy, int line)
 {
     float length = b - a;
     cells->length[pixel] += length;
@@ -29,14 +31,9 @@ static void cells_add_part(gnoi_cells *cells, int pixel, float a, float b, float
         cells->by_line[line][pixel] += length;
 }
 
-/* Adds [x0,x1), in pixels from the tile's left side. */
-static void cells_add(gnoi_cells *cells, float x0, float x1, float dy, int line)
+static void cells_add_parts(gnoi_cells *cells, float x0, float x1, float dy, int line)
 {
-    int p0 = (int)x0, p1 = (int)x1;
-    if (p0 == p1) {
-        cells_add_part(cells, p0, x0 - (float)p0, x1 - (float)p0, dy, line);
-        return;
-    }
+    const int p0 = (int)x0, p1 = (int)x1;
     cells_add_part(cells, p0, x0 - (float)p0, 1, dy, line);
     for (int p = p0 + 1; p < p1; p++) {
         cells->length[p] += 1;
@@ -48,11 +45,26 @@ static void cells_add(gnoi_cells *cells, float x0, float x1, float dy, int line)
         cells_add_part(cells, p1, 0, x1 - (float)p1, dy, line);
 }
 
+/* Adds [x0,x1), in pixels from the tile's left side. */
+static inline void cells_add(gnoi_cells *cells, float x0, float x1, float dy, int line)
+{
+    const int p = (int)x0;
+    if (p == (int)x1)
+        cells_add_part(cells, p, x0 - (float)p, x1 - (float)p, dy, line);
+    else
+        cells_add_parts(cells, x0, x1, dy, line);
+}
+
 /* The light that came through on [x0,x1), by pixel. */
 static inline void add_light(float colour[3][GNOI_TILE_W], float x0, float x1, const double light[3])
 {
-    int p1 = (int)x1;
-    for (int p = (int)x0; p <= p1 && p < GNOI_TILE_W; p++) {
+    const int p0 = (int)x0, p1 = (int)x1;
+    if (p0 == p1 && p0 < GNOI_TILE_W) {
+        for (int k = 0; k < 3; k++)
+            colour[k][p0] += (x1 - x0) * (float)light[k];
+        return;
+    }
+    for (int p = p0; p <= p1 && p < GNOI_TILE_W; p++) {
         float a = x0 > (float)p ? x0 : (float)p, b = x1 < (float)(p + 1) ? x1 : (float)(p + 1);
         for (int k = 0; k < 3; k++)
             colour[k][p] += (b - a) * (float)light[k];
@@ -202,7 +214,7 @@ static void split_pieces(gnoi_tile *tile, int row, const gnoi_slot *slot, uint32
 
 static void clear_lamp(gnoi_tile *tile, int lamp, int first, int last)
 {
-    cells_clear(&tile->lit[lamp], first, last);
+    cells_clear(tile, &tile->lit[lamp], first, last);
     for (int k = 0; k < 3; k++)
         memset(tile->lit_colour[lamp][k] + first, 0, (size_t)(last - first + 1) * sizeof(float));
     if (tile->tinted && tile->judging)
@@ -290,7 +302,7 @@ static void row_of_slot(gnoi_tile *tile, int row, gnoi_slot *slot, uint32_t chai
         last = b > last ? b : last;
     }
     columns = &tile->columns[slot->first_column];
-    cells_clear(&tile->cells, first, last);
+    cells_clear(tile, &tile->cells, first, last);
     for (int j = 0; j < lamps; j++)
         if (columns[j].state == GNOI_COLUMN_SPLIT)
             clear_lamp(tile, j, first, last);
@@ -468,6 +480,7 @@ void gnoi_tile_row(gnoi_tile *tile, int row)
         return;
     }
     set_shares(tile, row);
+    tile->specks.lines = tile->judging ? tile->job->def.base_lines : 0;
     count = part_pieces(tile, row);
     if (tile->veiled) {
         memset(tile->row_cover, 0, sizeof tile->row_cover);

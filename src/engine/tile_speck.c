@@ -232,7 +232,7 @@ static int set_cell(gnoi_tile *tile, uint32_t i)
     tile->cells.length[pixel] = s->length[i];
     tile->cells.mx[pixel] = s->mx[i];
     tile->cells.my[pixel] = s->my[i];
-    for (int l = 0; l < GNOI_BASE_LINES; l++)
+    for (int l = 0; l < s->lines; l++)
         tile->cells.by_line[l][pixel] = s->by_line[l][i];
     return pixel;
 }
@@ -261,7 +261,7 @@ static void sample_bending(gnoi_tile *tile, int row)
         s->length[n] = s->length[i];
         s->mx[n] = s->mx[i];
         s->my[n] = s->my[i];
-        for (int l = 0; l < GNOI_BASE_LINES; l++)
+        for (int l = 0; l < s->lines; l++)
             s->by_line[l][n] = s->by_line[l][i];
         n++;
     }
