@@ -281,6 +281,7 @@ void gnoi_textures_free(gnoi_textures *t)
 {
     gno_context *context = gno_scene_context(t->scene);
     if (t->kept.context) gnoi_raster_free(&t->kept);
+    t->kept_entry = 0;
     for (size_t i = 0; i < t->count; i++) gno_context_realloc(context, t->entries[i].key, t->entries[i].key_size, 0);
     if (t->entries) gno_context_realloc(context, t->entries, t->capacity * sizeof *t->entries, 0);
     t->entries = NULL;

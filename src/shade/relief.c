@@ -206,32 +206,26 @@ static void slope_of(const gnoi_image *image, const gno_texture *how, const fram
 
 /* ---- the same side by side ------------------------------------------------------------------------------------------------- */
 
-/* Samples between the cells of a level each: the first of three columns and rows of cells, the place from there on, and the heights. */
+/* Samples between the cells of a level each: where between the middles of the first two of three columns and rows, and their heights. */
 typedef struct spots {
     double wide[GNOI_RELIEF_RUN], high[GNOI_RELIEF_RUN]; /* cells of the level */
-    int column[GNOI_RELIEF_RUN], row[GNOI_RELIEF_RUN];
     float a[GNOI_RELIEF_RUN], b[GNOI_RELIEF_RUN];
     float height[3][3][GNOI_RELIEF_RUN];
 } spots;
 
 typedef double run_slopes[2][GNOI_RELIEF_RUN];
 
-VECTOR_CLONES static void find_spots(const double *restrict s, const double *restrict t, spots *restrict q)
+static inline void set_spot(spots *q, int i, const gnoi_image_level *l, gno_wrap wrap, double s, double t)
 {
-    for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
-        double x = s[i] * q->wide[i] - 1, y = t[i] * q->high[i] - 1;
-        q->column[i] = floor_of(x);
-        q->row[i] = floor_of(y);
-        q->a[i] = (float)(x - q->column[i]);
-        q->b[i] = (float)(y - q->row[i]);
-    }
-}
-
-static void fetch_heights(const gnoi_image_level *l, gno_wrap wrap, int i, spots *q)
-{
+    double x = s * l->width - 1, y = t * l->height - 1;
+    int column = floor_of(x), row = floor_of(y);
     float room[9];
     size_t stride;
-    const float *h = nine_heights(l, wrap, q->column[i], q->row[i], room, &stride);
+    const float *h = nine_heights(l, wrap, column, row, room, &stride);
+    q->wide[i] = l->width;
+    q->high[i] = l->height;
+    q->a[i] = (float)(x - column);
+    q->b[i] = (float)(y - row);
     for (int j = 0; j < 3; j++, h += stride)
         for (int k = 0; k < 3; k++)
             q->height[j][k][i] = h[k];
@@ -257,50 +251,31 @@ VECTOR_CLONES static void find_slopes(const spots *restrict q, run_slopes *restr
     }
 }
 
-/* Slopes of one level each, `higher` above the samples' own. */
-static void level_slopes(const gnoi_image *image, gno_wrap wrap, int count, const int *level, int higher, const double *s, const double *t,
-                         run_slopes *slope)
-{
-    spots q;
-    const gnoi_image_level *l[GNOI_RELIEF_RUN];
-    for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
-        int own = level[i] + higher < image->level_count ? level[i] + higher : image->level_count - 1;
-        l[i] = &image->level[own];
-        q.wide[i] = l[i]->width;
-        q.high[i] = l[i]->height;
-    }
-    find_spots(s, t, &q);
-    if (count < GNOI_RELIEF_RUN)
-        memset(q.height, 0, sizeof q.height);
-    for (int i = 0; i < count; i++)
-        fetch_heights(l[i], wrap, i, &q);
-    find_slopes(&q, slope);
-}
-
 /* The slopes seen by `count` pixels; numbers of no meaning beyond. */
 static void slopes_of(const gnoi_image *image, gno_wrap wrap, const frames *f, int count, run_slopes *slope)
 {
-    double s[GNOI_RELIEF_RUN], t[GNOI_RELIEF_RUN], part[GNOI_RELIEF_RUN];
-    int level[GNOI_RELIEF_RUN], is_mixed = 0;
-    run_slopes coarse;
+    double part[GNOI_RELIEF_RUN] = {0};
+    spots fine, coarse;
+    int is_mixed = 0;
+    if (count < GNOI_RELIEF_RUN) {
+        memset(&fine, 0, sizeof fine);
+        memset(&coarse, 0, sizeof coarse);
+    }
     for (int i = 0; i < count; i++) {
         mix m = mix_of(image, wrap, f->s[i], f->t[i], f->length[i], f->width[i]);
-        s[i] = m.s, t[i] = m.t;
         part[i] = m.part;
-        level[i] = m.level;
         is_mixed |= m.part > 0;
+        set_spot(&fine, i, &image->level[m.level], wrap, m.s, m.t);
+        set_spot(&coarse, i, &image->level[m.level + (m.part > 0)], wrap, m.s, m.t);
     }
-    for (int i = count; i < GNOI_RELIEF_RUN; i++) {
-        s[i] = t[i] = part[i] = 0;
-        level[i] = 0;
+    find_slopes(&fine, slope);
+    if (is_mixed) {
+        run_slopes by_coarse;
+        find_slopes(&coarse, &by_coarse);
+        for (int k = 0; k < 2; k++)
+            for (int i = 0; i < GNOI_RELIEF_RUN; i++)
+                (*slope)[k][i] = part[i] > 0 ? mixed((*slope)[k][i], by_coarse[k][i], part[i]) : (*slope)[k][i];
     }
-    level_slopes(image, wrap, count, level, 0, s, t, slope);
-    if (!is_mixed)
-        return;
-    level_slopes(image, wrap, count, level, 1, s, t, &coarse);
-    for (int k = 0; k < 2; k++)
-        for (int i = 0; i < GNOI_RELIEF_RUN; i++)
-            (*slope)[k][i] = part[i] > 0 ? mixed((*slope)[k][i], coarse[k][i], part[i]) : (*slope)[k][i];
 }
 
 INLINE vec3 raise_by(double amount, vec3 qx, vec3 qy, double by_s, double by_t, vec3 n)
