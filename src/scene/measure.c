@@ -246,6 +246,7 @@ static gno_status measure_chunk(void *user, int worker, size_t piece)
         sums.measures.empty += kind == GNOI_EMPTY;
         sums.bent += kind == GNOI_BENT;
         sums.measures.smooth |= kind != GNOI_EMPTY && (flags & GNOI_IS_SMOOTH);
+        sums.measures.using_normals += kind != GNOI_EMPTY && (flags & GNOI_USES_NORMALS);
     }
     *c = sums;
     if (m->blocks) {
@@ -296,6 +297,7 @@ static void add_chunks(gno_scene *scene, const measuring *m, size_t pieces, gnoi
     for (size_t i = 0; i < pieces; i++) {
         add_bounds(&box, &m->chunks[i].box);
         measures->empty += m->chunks[i].measures.empty;
+        measures->using_normals += m->chunks[i].measures.using_normals;
         measures->smooth |= m->chunks[i].measures.smooth;
     }
     set_scale(&scene->prepared, &box);

@@ -35,10 +35,11 @@ static gno_status unit_piece(void *user, int worker, size_t piece)
     int zero = 0;
     (void)worker;
     for (size_t i = piece * PIECE; i < end; i++) {
+        const uint32_t *source = s->w->normal_source;
         vec3 n;
-        if (i + AHEAD < end)
-            FETCH(s->w->scene->normals[s->w->normal_source[i + AHEAD]]);
-        n = unit_of(s->w->scene->normals[s->w->normal_source[i]]);
+        if (source && i + AHEAD < end)
+            FETCH(s->w->scene->normals[source[i + AHEAD]]);
+        n = unit_of(s->w->scene->normals[source ? source[i] : i]);
         out->normals[i][0] = (float)n.x;
         out->normals[i][1] = (float)n.y;
         out->normals[i][2] = (float)n.z;

@@ -1,10 +1,11 @@
-/* number.c -- prepared vertices and normals, numbered in the order in which corners use them first.
+/* number.c -- prepared vertices, and normals where few are used, numbered in the order in which corners use them first.
  *
  * Place in the data flow: emit.c (corners name the scene's vertices, of each place the first one, and normals) -> here -> emit.c, normals.c.
  * The order of first use keeps together in memory what neighbouring polygons need, and gives chunks of polygons vertices of their own:
  * those first used in a chunk have numbers from chunk_vertex of it to that of the next, so that passes over chunks may write to them
  * at the same time as long as polygons that share vertices with an earlier chunk (prepared.seams) are left for later.
- * Numbering goes corner by corner; that of vertices and that of normals are independent and run side by side.
+ * Numbering goes corner by corner; that of vertices and that of normals are independent and run side by side. Where most polygons use normals
+ * of the file these keep their numbers: that saves a way through all corners, and a picture asks only for the normals of what is in sight.
  */
 #include "base/fetch.h"
 #include "base/pages.h"
@@ -81,6 +82,12 @@ static gno_status number_normals(numbering *n)
     return GNO_OK;
 }
 
+/* 1 when normals are numbered anew. */
+static int renumbers(const gnoi_preparing *w)
+{
+    return w->out->corner_normal && w->scene->normal_count > 0 && 2 * w->measures.using_normals < w->scene->polygon_count;
+}
+
 static gno_status number_piece(void *user, int worker, size_t piece)
 {
     (void)worker;
@@ -107,14 +114,16 @@ static gno_status number_corners(numbering *n)
     gnoi_preparing *w = n->w;
     gnoi_prepared *out = w->out;
     gno_context *context = w->scene->context;
-    int normals = out->corner_normal && w->scene->normal_count > 0;
+    const int normals = renumbers(w);
     gno_status status;
-    if (!n->vertex_source || !n->normal_number || !w->vertex_number || !w->normal_source || !out->chunk_vertex || !out->chunk_corner ||
+    if (!n->vertex_source || (normals && (!n->normal_number || !w->normal_source)) || !w->vertex_number || !out->chunk_vertex || !out->chunk_corner ||
         !out->chunk_opaque)
         return GNO_ERROR_MEMORY;
     status = gnoi_parallel(context, w->threads, normals ? 2 : 1, "prepare", number_piece, n);
     if (status != GNO_OK)
         return status;
+    if (out->corner_normal && !normals)
+        out->normal_count = w->scene->normal_count;
     out->positions = gnoi_malloc(context, out->vertex_count, sizeof *out->positions);
     out->vertex_capacity = out->vertex_count;
     if (!out->positions)
@@ -125,13 +134,13 @@ static gno_status number_corners(numbering *n)
 gno_status gnoi_number_corners(gnoi_preparing *w)
 {
     gno_context *context = w->scene->context;
-    const size_t vertices = w->scene->vertex_count, normals = w->out->corner_normal ? w->scene->normal_count : 0;
+    const size_t vertices = w->scene->vertex_count, normals = renumbers(w) ? w->scene->normal_count : 0;
     numbering n = {w, NULL, NULL};
     gno_status status;
     n.vertex_source = gnoi_malloc(context, vertices + 1, sizeof *n.vertex_source);
-    n.normal_number = gnoi_malloc(context, normals, sizeof *n.normal_number);
+    n.normal_number = normals > 0 ? gnoi_malloc(context, normals, sizeof *n.normal_number) : NULL;
     w->vertex_number = gnoi_malloc(context, vertices, sizeof *w->vertex_number);
-    w->normal_source = gnoi_malloc(context, normals + 1, sizeof *w->normal_source);
+    w->normal_source = normals > 0 ? gnoi_malloc(context, normals + 1, sizeof *w->normal_source) : NULL;
     w->normal_source_count = normals + 1;
     w->out->chunk_vertex = gnoi_malloc(context, w->chunk_count + 1, sizeof *w->out->chunk_vertex);
     w->out->chunk_corner = gnoi_malloc(context, w->chunk_count + 1, sizeof *w->out->chunk_corner);

@@ -2,7 +2,7 @@
  *
  * Place in the data flow: gno_scene -> measure.c (which polygons have area and are planar; bounds) -> split.c (triangles of those that
  * are not planar) -> order.c (what is left, as it lies in space) -> weld.c (vertices at one place), emit.c (rings and corners in that
- * order) -> number.c (vertices and normals numbered in the order of first use) -> emit.c (records: planes, triangulations) -> normals.c, average.c
+ * order) -> number.c (vertices, and normals of which few are used, numbered in the order of first use) -> emit.c (records: planes, triangulations) -> normals.c, average.c
  * (vertex normals of smooth polygons) -> details.c -> solid.c (connected parts, which of them are closed) -> cap.c (closes those that
  * stand open on a plane) -> gnoi_prepared.
  * Steps return a status, with a message only for limits; prepare.c writes the others.
@@ -31,6 +31,7 @@ typedef enum gnoi_kind {
 
 typedef struct gnoi_measures {
     size_t empty, split; /* polygons of the kind */
+    size_t using_normals; /* polygons that are not empty and GNOI_USES_NORMALS */
     int smooth;          /* some polygon that is not empty is smooth */
 } gnoi_measures;
 
@@ -71,7 +72,7 @@ typedef struct gnoi_preparing {
     size_t chunk_count;
     uint32_t *same;          /* of scene vertices: the first one at the place */
     uint32_t *vertex_number; /* of those: the prepared vertex, or GNOI_NONE where there is none */
-    uint32_t *normal_source; /* of prepared normals: the scene's */
+    uint32_t *normal_source; /* of prepared normals: the scene's; NULL: they are numbered as the scene's are */
     size_t normal_source_count;
 } gnoi_preparing;
 
