@@ -139,19 +139,20 @@ static int carry(const gnoi_receiver *r, const gnoi_columns *columns, double x, 
     const int near = row - then <= 1 && then - row <= 1;
     const path way = path_between(column->at_x, column->at_y, x, y);
     gnoi_row_list list = gnoi_row_list_of(columns, r, near ? column->rim_rows : GNOI_NONE, column->rim, column->rim_count, row);
-    int sure = 1;
+    int sure = 1, change = 0;
     if (!near && column->rim_count > MANY_RIMS)
         return 0;
     for (uint32_t i = 0; i < list.count && sure; i++)
-        column->count += rim_change(&columns->rims[gnoi_row_list_item(&list, i)], &way, &sure);
+        change += rim_change(&columns->rims[gnoi_row_list_item(&list, i)], &way, &sure);
     if (list.items && then != row) {
         list = gnoi_row_list_of(columns, r, column->rim_rows, column->rim, column->rim_count, then);
         for (uint32_t i = 0; i < list.count && sure; i++) {
             const gnoi_rim *rim = &columns->rims[list.items[i]];
             if (gnoi_region_row(r, rim->edge.y) > row || gnoi_region_row(r, rim->edge.y1) < row) /* else it was in the other row's list */
-                column->count += rim_change(rim, &way, &sure);
+                change += rim_change(rim, &way, &sure);
         }
     }
+    column->count += change;
     return sure && column->count >= 0;
 }
 
