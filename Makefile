@@ -54,7 +54,7 @@ soname = -Wl,-soname,$(1).so.$(SOMAJOR)
 pkg = $(shell $(PKGCONFIG) $(1) 2>/dev/null || echo $(2))
 IO_CFLAGS := $(call pkg,--cflags yaml-0.1 assimp libpng cairo-pdf,-I/usr/include/libpng16 -I/usr/include/cairo) \
              $(filter -I%,$(call pkg,--cflags OpenEXR,-I/usr/include/OpenEXR -I/usr/include/Imath))
-IO_LIBS   := $(call pkg,--libs yaml-0.1 assimp libpng cairo-pdf,-lyaml -lassimp -lpng -lz -lcairo) -lOpenEXRCore
+IO_LIBS   := $(call pkg,--libs yaml-0.1 assimp libpng cairo-pdf,-lyaml -lassimp -lpng -lcairo) -lOpenEXRCore
 TEST_LIBS := $(call pkg,--libs cmocka,-lcmocka)
 
 VERSION := $(shell sed -n 's/^.define GNO_VERSION_[A-Z]* \([0-9]*\)/\1/p' include/gnomon/gnomon.h | paste -sd.)

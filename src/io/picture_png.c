@@ -1,20 +1,15 @@
-/* picture_png.c -- PNG, 8 or 16 bit sRGB, some rows encoded at a time.
+/* picture_png.c -- PNG, 8 or 16 bit sRGB, one row encoded at a time.
  *
- * Place: encoder under picture.c; srgb.c has the curve, deflate.c the compression, libpng makes the chunks. It reports errors by
- * longjmp, so one function holds the setjmp and everything that could be lost by it lives in the caller's `encoder`.
+ * Place: encoder under picture.c; srgb.c has the curve. libpng reports errors by longjmp, so one function holds the
+ * setjmp and everything that could be lost by it lives in the caller's `encoder`.
  */
-#include "io/deflate.h"
 #include "io/picture.h"
 #include "io/srgb.h"
 
 #include <png.h>
 #include <setjmp.h>
 #include <string.h>
-
-enum {
-    BLOCK_BYTES = 65536, /* of what is compressed together; a row at least */
-    FILTER_UP = 2        /* each byte less the one above */
-};
+#include <zlib.h>
 
 typedef struct encoder {
     const gnoi_picture *picture;
@@ -22,9 +17,8 @@ typedef struct encoder {
     png_structp png;
     png_infop info;
     gnoi_srgb srgb;
-    gnoi_deflate deflate;
-    png_byte *rows; /* this row and the one above, then those of a block, filtered, with their filter in front */
-    size_t row_size, block_rows;
+    png_byte *row;
+    size_t row_size;
     char message[200];
 } encoder;
 
@@ -81,10 +75,11 @@ static void on_flush(png_structp png)
     (void)png;
 }
 
-static void encode_row(const encoder *e, const float *source, png_byte *out)
+static void encode_row(encoder *e, const float *source)
 {
     const size_t values = (size_t)e->picture->width * 3;
     const double exposure = e->picture->exposure;
+    png_byte *out = e->row;
     if (e->picture->depth == 8) {
         for (size_t i = 0; i < values; i++) {
             out[i] = (png_byte)gnoi_srgb_level(&e->srgb, source[i] * exposure);
@@ -98,48 +93,9 @@ static void encode_row(const encoder *e, const float *source, png_byte *out)
     }
 }
 
-static void filter_row(const png_byte *row, const png_byte *above, size_t size, png_byte *out)
-{
-    out[0] = FILTER_UP;
-    for (size_t i = 0; i < size; i++) {
-        out[1 + i] = (png_byte)(row[i] - above[i]);
-    }
-}
-
-static size_t rows_size(const encoder *e)
-{
-    return 2 * e->row_size + e->block_rows * (e->row_size + 1);
-}
-
-/* Returns 0 when the caller of gno_picture_write wants no more. */
-static int write_rows(encoder *e)
-{
-    static const png_byte type[] = "IDAT";
-    const int height = e->picture->height;
-    png_byte *const block = e->rows + 2 * e->row_size;
-    size_t filled = 0;
-    memset(e->rows, 0, 2 * e->row_size); /* there is nothing above the first row */
-    for (int y = 0; y < height; y++) {
-        png_byte *const row = e->rows + (y & 1 ? e->row_size : 0), *const above = e->rows + (y & 1 ? 0 : e->row_size);
-        if (!gnoi_file_go_on(e->file, (double)y / height)) {
-            return 0;
-        }
-        encode_row(e, gnoi_picture_row(e->picture, y), row);
-        filter_row(row, above, e->row_size, block + filled);
-        filled += e->row_size + 1;
-        if (y + 1 == height || filled == e->block_rows * (e->row_size + 1)) {
-            const size_t size = gnoi_deflate_block(&e->deflate, block, filled, y + 1 == height);
-            png_write_chunk(e->png, type, e->deflate.out, size);
-            filled = 0;
-        }
-    }
-    return 1;
-}
-
 /* Returns 0 when libpng gave up. */
 static int encode(encoder *e)
 {
-    static const png_byte end[] = "IEND";
     if (setjmp(png_jmpbuf(e->png)) != 0) {
         return 0;
     }
@@ -148,11 +104,20 @@ static int encode(encoder *e)
     png_set_IHDR(e->png, e->info, (png_uint_32)e->picture->width, (png_uint_32)e->picture->height, e->picture->depth, PNG_COLOR_TYPE_RGB,
                  PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(e->png, e->info, PNG_sRGB_INTENT_RELATIVE);
+    /* Measured on rendered pictures: four times as fast as libpng's defaults, for a third more bytes. */
+    png_set_filter(e->png, PNG_FILTER_TYPE_DEFAULT, PNG_FILTER_UP);
+    png_set_compression_level(e->png, 1);
+    png_set_compression_strategy(e->png, 3); /* zlib's Z_RLE: of differences from row to row only runs repeat */
+    png_set_compression_buffer_size(e->png, 65536);
     png_write_info(e->png, e->info);
-    if (!write_rows(e)) {
-        return 0;
+    for (int y = 0; y < e->picture->height; y++) {
+        if (!gnoi_file_go_on(e->file, (double)y / e->picture->height)) {
+            return 0;
+        }
+        encode_row(e, gnoi_picture_row(e->picture, y));
+        png_write_row(e->png, e->row);
     }
-    png_write_chunk(e->png, end, NULL, 0);
+    png_write_end(e->png, NULL);
     return 1;
 }
 
@@ -163,14 +128,11 @@ gno_status gnoi_picture_png(const gnoi_picture *picture, gnoi_file *file)
     e.picture = picture;
     e.file = file;
     e.row_size = (size_t)picture->width * 3 * (size_t)(picture->depth / 8);
-    e.block_rows = e.row_size < BLOCK_BYTES ? BLOCK_BYTES / e.row_size : 1;
-    e.block_rows = e.block_rows < (size_t)picture->height ? e.block_rows : (size_t)picture->height;
-    e.rows = gno_context_realloc(file->context, NULL, 0, rows_size(&e));
+    e.row = gno_context_realloc(file->context, NULL, 0, e.row_size);
     e.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &e, on_error, on_warning, &e, allocate, release);
     e.info = e.png != NULL ? png_create_info_struct(e.png) : NULL;
     gno_status status = GNO_OK;
-    if (e.rows == NULL || e.info == NULL || !gnoi_srgb_create(file->context, picture->depth, &e.srgb) ||
-        !gnoi_deflate_create(file->context, e.block_rows * (e.row_size + 1), &e.deflate)) {
+    if (e.row == NULL || e.info == NULL || !gnoi_srgb_create(file->context, picture->depth, &e.srgb)) {
         status = gno_context_fail(file->context, GNO_ERROR_MEMORY, "out of memory for writing a PNG picture");
     } else if (!encode(&e) && file->error == 0) {
         char text[256];
@@ -182,9 +144,8 @@ gno_status gnoi_picture_png(const gnoi_picture *picture, gnoi_file *file)
     if (e.png != NULL) {
         png_destroy_write_struct(&e.png, &e.info);
     }
-    gnoi_deflate_destroy(&e.deflate);
-    if (e.rows != NULL) {
-        gno_context_realloc(file->context, e.rows, rows_size(&e), 0);
+    if (e.row != NULL) {
+        gno_context_realloc(file->context, e.row, e.row_size, 0);
     }
     return status;
 }
