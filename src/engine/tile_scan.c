@@ -175,7 +175,8 @@ static void set_masks(gnoi_tile *tile)
 static int open_lines(gnoi_tile *tile)
 {
     size_t count = tile->lines.line_count;
-    if (!gnoi_reserve(tile->lines.context, (void **)&tile->line_y, &tile->line_y_capacity, count + GNOI_LANE_STEP, sizeof *tile->line_y) ||
+    if (tile->lines.failed || /* there may be no strips then */
+        !gnoi_reserve(tile->lines.context, (void **)&tile->line_y, &tile->line_y_capacity, count + GNOI_LANE_STEP, sizeof *tile->line_y) ||
         !gnoi_reserve(tile->lines.context, (void **)&tile->bar, &tile->bar_capacity, count, sizeof *tile->bar))
         return 0;
     for (size_t i = 0; i < count + GNOI_LANE_STEP; i++)
