@@ -1,5 +1,6 @@
 /* test_sheet.c -- shadows of closed solids and of such as stand open on a plane, found by the contours of their far sides, against the same solids of a
- * material that lets a billionth of the light through: such solids are not halved, and every polygon casts for itself. */
+ * material that lets a billionth of the light through: such solids are not halved, and every polygon casts for itself. And lines of one pixel
+ * row, where much is carried from line to line, against the same lines each in a row of its own. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -55,10 +56,10 @@ static void add_ground(gno_scene *scene)
     assert_int_equal(gno_scene_add_mesh(scene, &mesh, NULL), GNO_OK);
 }
 
-static void add_lights(gno_scene *scene, uint32_t *seed)
+static void add_lights(gno_scene *scene, uint32_t *seed, int kinds)
 {
     gno_light light = gno_light_default();
-    light.type = (gno_light_type)(solid_random(seed) % 3);
+    light.type = kinds == 1 ? GNO_LIGHT_DIRECTIONAL : (gno_light_type)(solid_random(seed) % 3);
     light.position[0] = solid_uniform(seed, -6, 6);
     light.position[1] = solid_uniform(seed, -6, 6);
     light.position[2] = solid_uniform(seed, 5, 9);
@@ -69,7 +70,8 @@ static void add_lights(gno_scene *scene, uint32_t *seed)
     assert_int_equal(gno_scene_add_light(scene, NULL, &light, NULL), GNO_OK);
 }
 
-static gno_scene *make_scene(gno_context *context, uint32_t seed, double transmission)
+/* kinds: of light; 1: suns alone, under which a flat surface is lit alike everywhere. */
+static gno_scene *make_scene(gno_context *context, uint32_t seed, double transmission, int kinds, int scale)
 {
     static solid s;
     gno_material material = gno_material_default();
@@ -91,8 +93,8 @@ static gno_scene *make_scene(gno_context *context, uint32_t seed, double transmi
         place(&mesh, (int)(solid_random(&seed) % 4), &seed);
         assert_int_equal(gno_scene_add_mesh(scene, &mesh, NULL), GNO_OK);
     }
-    add_lights(scene, &seed);
-    add_lights(scene, &seed);
+    add_lights(scene, &seed, kinds);
+    add_lights(scene, &seed, kinds);
     camera.eye[0] = solid_uniform(&seed, -5, 5);
     camera.eye[1] = -9;
     camera.eye[2] = solid_uniform(&seed, 4, 8);
@@ -103,8 +105,8 @@ static gno_scene *make_scene(gno_context *context, uint32_t seed, double transmi
         camera.eye[1] = -14;
     }
     assert_int_equal(gno_scene_set_camera(scene, &camera), GNO_OK);
-    image.width = WIDTH;
-    image.height = HEIGHT;
+    image.width = WIDTH * scale;
+    image.height = HEIGHT * scale;
     assert_int_equal(gno_scene_set_image(scene, &image), GNO_OK);
     return scene;
 }
@@ -133,7 +135,7 @@ static int differences(uint32_t seed)
         gno_context *context;
         gno_scene *scene;
         assert_int_equal(gno_context_create(NULL, &context), GNO_OK);
-        scene = make_scene(context, seed, as_sheets ? 0 : 1e-9);
+        scene = make_scene(context, seed, as_sheets ? 0 : 1e-9, 3, 1);
         assert_int_equal(gno_render(scene, &how, as_sheets ? sheets : apart, NULL), GNO_OK);
         gno_scene_destroy(scene);
         gno_context_destroy(context);
@@ -154,8 +156,48 @@ static void test_sheets_agree(void **state)
     assert_int_equal(wrong, 0);
 }
 
+#define LINES 9
+
+static void draw(uint32_t seed, int scale, float *rgb)
+{
+    gno_render_def how = gno_render_def_default();
+    gno_context *context;
+    gno_scene *scene;
+    how.lines = how.base_lines = LINES / scale;
+    how.threads = 1;
+    assert_int_equal(gno_context_create(NULL, &context), GNO_OK);
+    scene = make_scene(context, seed, 0, 1, scale);
+    assert_int_equal(gno_render(scene, &how, rgb, NULL), GNO_OK);
+    gno_scene_destroy(scene);
+    gno_context_destroy(context);
+}
+
+/* Largest difference of a picture with LINES lines a row to one as many times as large with one line a row, averaged. */
+static double difference_of_rows(uint32_t seed)
+{
+    static float rows[WIDTH * HEIGHT * 3], lines[WIDTH * HEIGHT * LINES * LINES * 3];
+    double most = 0;
+    draw(seed, 1, rows);
+    draw(seed, LINES, lines);
+    for (int i = 0; i < WIDTH * HEIGHT * 3; i++) {
+        const int k = i % 3, x = i / 3 % WIDTH, y = i / 3 / WIDTH;
+        double sum = 0;
+        for (int j = 0; j < LINES * LINES; j++)
+            sum += (double)lines[3 * ((LINES * y + j / LINES) * (LINES * WIDTH) + LINES * x + j % LINES) + k];
+        most = fmax(most, fabs(sum / (LINES * LINES) - (double)rows[i]));
+    }
+    return most;
+}
+
+static void test_lines_of_a_row(void **state)
+{
+    (void)state;
+    for (uint32_t seed = 1; seed <= 12; seed++)
+        assert_true(difference_of_rows(seed * 104729u) < 5e-5);
+}
+
 int main(void)
 {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sheets_agree)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(test_sheets_agree), cmocka_unit_test(test_lines_of_a_row)};
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
