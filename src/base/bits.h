@@ -17,16 +17,6 @@ static inline unsigned gnoi_lowest_bit_long(uint64_t mask)
 #endif
 }
 
-static inline unsigned gnoi_lowest_bit(unsigned mask)
-{
-#if defined(__GNUC__)
-    return (unsigned)__builtin_ctz(mask);
-#else
-    unsigned k = 0;
-    while (!(mask >> k & 1))
-        k++;
-    return k;
-#endif
-}
+static inline unsigned gnoi_lowest_bit(unsigned mask) { return gnoi_lowest_bit_long(mask); }
 
 #endif

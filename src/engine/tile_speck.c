@@ -48,6 +48,8 @@ typedef struct curved {
 
 static void bend_facets(const gnoi_tile *tile, curved *c)
 {
+    if (c->count == 0)
+        return;
     gnoi_interp_lanes_set(&c->lanes, &tile->job->view);
     for (unsigned i = 0; i < c->count; i++) {
         gnoi_facet *facet = c->facets[i];

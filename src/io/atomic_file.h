@@ -13,7 +13,6 @@
 #include <gnomon/gnomon.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stddef.h>
 
 typedef struct gnoi_file {
     gno_context *context;
@@ -33,8 +32,6 @@ gno_status gnoi_file_open(gno_context *context, const char *path, int seekable, 
 
 /* Appends; returns 0 after an error. */
 int gnoi_file_write(gnoi_file *file, const void *data, size_t size);
-
-int gnoi_file_write_rows(gnoi_file *file, const void *rows, ptrdiff_t step, size_t size, int count);
 
 /* Appends `count` rows of `size` bytes (not 0), each `step` bytes behind the one before in memory; up to GNOI_FILE_ROWS go in one call of the
  * system. Returns 0 after an error. */

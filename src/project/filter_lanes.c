@@ -9,18 +9,10 @@
 #define FAR 1e10f
 #define FEW_COLUMNS 8
 
-INLINE float lesser(float a, float b) { return a < b ? a : b; }
-INLINE float greater(float a, float b) { return a > b ? a : b; }
-INLINE float within(float v, float low, float high) { return lesser(greater(v, low), high); }
+INLINE float within(float v, float low, float high) { return gnoi_lesser(gnoi_greater(v, low), high); }
 
-INLINE float floor_of(float v)
-{
-    float whole = (float)(int)v;
-    return whole - (float)(v < whole);
-}
-
-INLINE float least(gnoi_filter_lane_values v[4], int i) { return lesser(lesser(v[0][i], v[1][i]), lesser(v[2][i], v[3][i])); }
-INLINE float largest(gnoi_filter_lane_values v[4], int i) { return greater(greater(v[0][i], v[1][i]), greater(v[2][i], v[3][i])); }
+INLINE float least(gnoi_filter_lane_values v[4], int i) { return gnoi_lesser(gnoi_lesser(v[0][i], v[1][i]), gnoi_lesser(v[2][i], v[3][i])); }
+INLINE float largest(gnoi_filter_lane_values v[4], int i) { return gnoi_greater(gnoi_greater(v[0][i], v[1][i]), gnoi_greater(v[2][i], v[3][i])); }
 
 /* Where a line between rows meets the edges: x and y; the nearer end where it does not. */
 typedef struct border {
@@ -52,11 +44,11 @@ INLINE void cut_edges(const gnoi_filter_lanes *restrict l, const border *restric
     for (int e = 0; e < 4; e++)
         for (int i = 0; i < GNOI_FILTER_LANES; i++) {
             float off = 2.0f * FAR * (float)(from->y[e][i] == to->y[e][i]);
-            s->left[e][i] = lesser(from->x[e][i], to->x[e][i]);
-            s->right[e][i] = greater(from->x[e][i], to->x[e][i]);
+            s->left[e][i] = gnoi_lesser(from->x[e][i], to->x[e][i]);
+            s->right[e][i] = gnoi_greater(from->x[e][i], to->x[e][i]);
             s->height[e][i] = to->y[e][i] - from->y[e][i];
-            s->low[i] = lesser(s->low[i], s->left[e][i] + off);
-            s->high[i] = greater(s->high[i], s->right[e][i] - off);
+            s->low[i] = gnoi_lesser(s->low[i], s->left[e][i] + off);
+            s->high[i] = gnoi_greater(s->high[i], s->right[e][i] - off);
         }
     for (int e = 0; e < 4 && uneven; e++)
         for (int i = 0; i < GNOI_FILTER_LANES; i++) {
@@ -71,8 +63,8 @@ INLINE int set_columns(const float *restrict low, const float *restrict high, fl
     int most = 0;
     for (int i = 0; i < GNOI_FILTER_LANES; i++) {
         float some = (float)(low[i] <= high[i]);
-        first[i] = floor_of(some * low[i]);
-        columns[i] = ((int)(floor_of(some * high[i]) - first[i]) + 1) * (int)some;
+        first[i] = gnoi_floor(some * low[i]);
+        columns[i] = ((int)(gnoi_floor(some * high[i]) - first[i]) + 1) * (int)some;
     }
     for (int i = 0; i < GNOI_FILTER_LANES; i++)
         most = columns[i] > most ? columns[i] : most;
@@ -104,8 +96,8 @@ INLINE float even_sum(const gnoi_filter_lanes *restrict l, const stretches *rest
 {
     float sum = 0;
     for (int e = 0; e < 4; e++) {
-        float wide = greater(line, s->left[e][i]) - s->left[e][i], near = greater(line, s->right[e][i]) - s->right[e][i];
-        float over = lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]);
+        float wide = gnoi_greater(line, s->left[e][i]) - s->left[e][i], near = gnoi_greater(line, s->right[e][i]) - s->right[e][i];
+        float over = gnoi_lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]);
         sum += l->turn[e][i] * (s->height[e][i] * near + (wide - near) * over);
     }
     return sum;
@@ -116,8 +108,8 @@ INLINE float uneven_sum(const gnoi_filter_lanes *restrict l, const stretches *re
 {
     float part = 0, by_y = 0, square = 0, rest = 0;
     for (int e = 0; e < 4; e++) {
-        float wide = greater(line, s->left[e][i]) - s->left[e][i], near = greater(line, s->right[e][i]) - s->right[e][i], d = wide - near;
-        float over = lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]), lean = (1.0f - 2.0f * l->rightward[e][i]) * (2.0f / 3.0f);
+        float wide = gnoi_greater(line, s->left[e][i]) - s->left[e][i], near = gnoi_greater(line, s->right[e][i]) - s->right[e][i], d = wide - near;
+        float over = gnoi_lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]), lean = (1.0f - 2.0f * l->rightward[e][i]) * (2.0f / 3.0f);
         float a = l->turn[e][i] * s->height[e][i] * near, b = l->turn[e][i] * (d * over);
         part += a + b;
         by_y += a * s->middle_y[e][i] + b * (s->left_y[e][i] - over * lean);
@@ -180,9 +172,9 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
     for (int i = 0; i < GNOI_FILTER_LANES; i++) {
         l->low_x[i] = least(x, i);
         l->high_x[i] = largest(x, i);
-        l->first_row[i] = floor_of(least(y, i));
+        l->first_row[i] = gnoi_floor(least(y, i));
         l->weight[i] = 0;
-        l->rows[i] = (int)(floor_of(largest(y, i)) - l->first_row[i]) + 1;
+        l->rows[i] = (int)(gnoi_floor(largest(y, i)) - l->first_row[i]) + 1;
     }
     l->most = set_columns(l->low_x, l->high_x, l->first_column, l->columns);
     for (int c = 0; c < 4; c++)
@@ -191,8 +183,8 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
             float dx, dy, level, wide, high, k;
             l->turn[c][i] = 2.0f * down_there - 1.0f;
             l->x[c][i] = down_there * x0 + (1.0f - down_there) * x1;
-            l->y[c][i] = lesser(y0, y1);
-            l->end_y[c][i] = greater(y0, y1);
+            l->y[c][i] = gnoi_lesser(y0, y1);
+            l->end_y[c][i] = gnoi_greater(y0, y1);
             dx = l->turn[c][i] * (x1 - x0);
             dy = l->end_y[c][i] - l->y[c][i];
             level = (float)(dy < LEVEL_EDGE);

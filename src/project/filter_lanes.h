@@ -18,6 +18,16 @@
 
 typedef float gnoi_filter_lane_values[GNOI_FILTER_LANES];
 
+/* Without branches. */
+static inline float gnoi_lesser(float a, float b) { return a < b ? a : b; }
+static inline float gnoi_greater(float a, float b) { return a > b ? a : b; }
+
+static inline float gnoi_floor(float v)
+{
+    float whole = (float)(int)v;
+    return whole - (float)(v < whole);
+}
+
 typedef struct gnoi_filter_lanes {
     alignas(GNOI_LANE_ALIGNMENT) gnoi_filter_lane_values s;
     gnoi_filter_lane_values t, sx, sy, tx, ty, wx, wy; /* given: as in gnoi_look (filter.h) */

@@ -46,15 +46,6 @@ typedef struct gnoi_look_lanes {
 /* Finds the looks of `count` pixels, from place `first` on. Both are written up to the next multiple of 16. */
 void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int first);
 
-static inline float gnoi_lesser(float a, float b) { return a < b ? a : b; }
-static inline float gnoi_greater(float a, float b) { return a > b ? a : b; }
-
-static inline float gnoi_floor(float v)
-{
-    float whole = (float)(int)v;
-    return whole - (float)(v < whole);
-}
-
 /* Cells under a stretch of an axis. */
 static inline float gnoi_look_cells(float middle, float extent)
 {

@@ -24,7 +24,7 @@
 #define LOW (1u << LOW_BITS)
 #define BUCKETS (1u << (3 * MORTON_BITS - LOW_BITS))
 #define BUCKETS_AT_ONCE 32
-#define SHORT_LIST 32     /* items sorted by insertion */
+#define SHORT_LIST 32     /* items for which counting is too much */
 
 typedef struct ordering {
     gnoi_preparing *w;
@@ -170,24 +170,14 @@ static gno_status scatter_piece(void *user, int worker, size_t piece)
     return GNO_OK;
 }
 
-static void sort_few(gnoi_keyed *items, size_t count, uint32_t *order)
-{
-    for (size_t i = 0; i < count; i++) {
-        gnoi_keyed item = items[i];
-        size_t k = i;
-        for (; k > 0 && items[k - 1].key > item.key; k--)
-            items[k] = items[k - 1];
-        items[k] = item;
-    }
-    for (size_t i = 0; i < count; i++)
-        order[i] = items[i].value;
-}
-
-static void sort_bucket(gnoi_keyed *items, size_t count, uint32_t *order)
+/* scratch: room for as many. */
+static void sort_bucket(gnoi_keyed *items, gnoi_keyed *scratch, size_t count, uint32_t *order)
 {
     uint32_t next[LOW], sum = 0;
     if (count < SHORT_LIST) {
-        sort_few(items, count, order);
+        gnoi_sort(items, scratch, count);
+        for (size_t i = 0; i < count; i++)
+            order[i] = items[i].value;
         return;
     }
     memset(next, 0, sizeof next);
@@ -206,8 +196,10 @@ static gno_status sort_piece(void *user, int worker, size_t piece)
 {
     const ordering *o = user;
     (void)worker;
-    for (size_t b = piece * BUCKETS_AT_ONCE; b < (piece + 1) * BUCKETS_AT_ONCE; b++)
-        sort_bucket(o->sorted + o->bucket[b], o->bucket[b + 1] - o->bucket[b], o->w->order + o->bucket[b]);
+    for (size_t b = piece * BUCKETS_AT_ONCE; b < (piece + 1) * BUCKETS_AT_ONCE; b++) {
+        const size_t first = o->bucket[b];
+        sort_bucket(o->sorted + first, o->items + first, o->bucket[b + 1] - first, o->w->order + first);
+    }
     return GNO_OK;
 }
 

@@ -140,24 +140,34 @@ INLINE const float *nine_heights(const gnoi_image_level *l, gno_wrap wrap, int c
 
 INLINE float bend_of(float part, float h0, float h1, float h2) { return (1 - part) * (h1 - h0) + part * (h2 - h1); }
 
-/* Derivatives of the bilinear heights of one level, by S and by T, each by a difference one cell wide. */
+/* Derivatives of the bilinear heights of one level, by S and by T, each by a difference one cell wide: at a and b between the middles of the
+ * first two of three columns and rows of heights. */
+INLINE void slope_between(float a, float b, float h[3][3], double wide, double high, double slope[2])
+{
+    float ha = a >= 0.5f ? a - 0.5f : a + 0.5f, hb = b >= 0.5f ? b - 0.5f : b + 0.5f; /* the second one's weight, of the two that are interpolated */
+    float by_s[2], by_t[2];
+    for (int k = 0; k < 2; k++) {
+        float r0 = b >= 0.5f ? h[k + 1][0] : h[k][0], r1 = b >= 0.5f ? h[k + 1][1] : h[k][1], r2 = b >= 0.5f ? h[k + 1][2] : h[k][2];
+        float c0 = a >= 0.5f ? h[0][k + 1] : h[0][k], c1 = a >= 0.5f ? h[1][k + 1] : h[1][k], c2 = a >= 0.5f ? h[2][k + 1] : h[2][k];
+        by_s[k] = bend_of(a, r0, r1, r2);
+        by_t[k] = bend_of(b, c0, c1, c2);
+    }
+    slope[0] = (double)((1 - hb) * by_s[0] + hb * by_s[1]) * wide;
+    slope[1] = (double)((1 - ha) * by_t[0] + ha * by_t[1]) * high;
+}
+
 static void slope_at(const gnoi_image *image, const gno_texture *how, int level, double s, double t, double slope[2])
 {
     const gnoi_image_level *l = &image->level[level];
     double x = s * l->width - 1, y = t * l->height - 1;
-    int i0 = floor_of(x), j0 = floor_of(y);
-    float a = (float)(x - i0), b = (float)(y - j0);
-    int ia = a >= 0.5f, ib = b >= 0.5f; /* the middle row and column of interpolation, */
-    float ha = ia ? a - 0.5f : a + 0.5f, hb = ib ? b - 0.5f : b + 0.5f; /* and the second one's weight */
-    float room[9], by_s[2], by_t[2];
+    int column = floor_of(x), row = floor_of(y);
+    float room[9], near[3][3];
     size_t stride;
-    const float *h = nine_heights(l, how->wrap, i0, j0, room, &stride), *row = h + (ib ? stride : 0), *column = h + ia;
-    for (int k = 0; k < 2; k++, row += stride, column++) {
-        by_s[k] = bend_of(a, row[0], row[1], row[2]);
-        by_t[k] = bend_of(b, column[0], column[stride], column[2 * stride]);
-    }
-    slope[0] = (double)((1 - hb) * by_s[0] + hb * by_s[1]) * l->width;
-    slope[1] = (double)((1 - ha) * by_t[0] + ha * by_t[1]) * l->height;
+    const float *h = nine_heights(l, how->wrap, column, row, room, &stride);
+    for (int j = 0; j < 3; j++, h += stride)
+        for (int k = 0; k < 3; k++)
+            near[j][k] = h[k];
+    slope_between((float)(x - column), (float)(y - row), near, l->width, l->height, slope);
 }
 
 /* The two levels whose cells are next to a pixel's size: `level` and, unless that is the last, the one above it, the latter by a share of
@@ -231,23 +241,17 @@ static inline void set_spot(spots *q, int i, const gnoi_image_level *l, gno_wrap
             q->height[j][k][i] = h[k];
 }
 
-/* As slope_at. */
 VECTOR_CLONES static void find_slopes(const spots *restrict q, run_slopes *restrict slope)
 {
     for (int i = 0; i < GNOI_RELIEF_RUN; i++) {
-        float a = q->a[i], b = q->b[i], ha = a >= 0.5f ? a - 0.5f : a + 0.5f, hb = b >= 0.5f ? b - 0.5f : b + 0.5f;
-        float h[3][3], by_s[2], by_t[2];
+        float h[3][3];
+        double own[2];
         for (int j = 0; j < 3; j++)
             for (int k = 0; k < 3; k++)
                 h[j][k] = q->height[j][k][i];
-        for (int k = 0; k < 2; k++) {
-            float r0 = b >= 0.5f ? h[k + 1][0] : h[k][0], r1 = b >= 0.5f ? h[k + 1][1] : h[k][1], r2 = b >= 0.5f ? h[k + 1][2] : h[k][2];
-            float c0 = a >= 0.5f ? h[0][k + 1] : h[0][k], c1 = a >= 0.5f ? h[1][k + 1] : h[1][k], c2 = a >= 0.5f ? h[2][k + 1] : h[2][k];
-            by_s[k] = bend_of(a, r0, r1, r2);
-            by_t[k] = bend_of(b, c0, c1, c2);
-        }
-        (*slope)[0][i] = (double)((1 - hb) * by_s[0] + hb * by_s[1]) * q->wide[i];
-        (*slope)[1][i] = (double)((1 - ha) * by_t[0] + ha * by_t[1]) * q->high[i];
+        slope_between(q->a[i], q->b[i], h, q->wide[i], q->high[i], own);
+        (*slope)[0][i] = own[0];
+        (*slope)[1][i] = own[1];
     }
 }
 

@@ -207,14 +207,13 @@ int gnoi_column_intervals(const gno_scene *scene, const gnoi_view *view, const g
 {
     gnoi_shade shade = {scene, view, lamp, receiver};
     size_t before;
+    columns->interval_count = 0;
     if (lamp->softness > 0) { /* nothing is halved, there is no sheet */
-        columns->interval_count = 0;
         if (!collect(&shade, column, y, xa, xb, 1, columns))
             return 0;
         before = columns->interval_count;
         return (!lamp->spot || add_cone_intervals(view, lamp, receiver, y, xa, xb, columns)) && note_source(columns, before, GNOI_NONE);
     }
-    columns->interval_count = 0;
     if (column->caster_count > 0 && !collect(&shade, column, y, xa, xb, 0, columns))
         return 0;
     if (column->sheet && !gnoi_sheet_intervals(scene, view, lamp, casters, receiver, column, y, xa, xb, columns))
