@@ -186,7 +186,7 @@ static gnoi_tone *make_tones(const gno_scene *scene)
         tones[i].has_holes = gnoi_has_holes(scene, m);
         tones[i].bumped = m->bump.kind != GNO_BUMP_NONE;
         tones[i].one_place = is_one_place(&m->texture, &m->bump.texture);
-        tones[i].mean[0] = tones[i].mean[1] = tones[i].mean[2] = 0;
+        tones[i].mean[0] = tones[i].mean[1] = tones[i].mean[2] = -1;
         if (m->texture.kind == GNO_TEXTURE_IMAGE)
             set_mean(scene, m, &tones[i]);
     }

@@ -31,7 +31,7 @@ typedef struct gnoi_tone {
     float glint_edge; /* R.S from which on a highlight counts */
     int textured, bumped, has_holes;
     int one_place; /* the bump lies where the texture does */
-    float mean[3]; /* of the texture, where it is a picture; else all zero */
+    float mean[3]; /* of the texture, where it is a picture; else -1 */
 } gnoi_tone;
 
 /* What all tiles of one picture share; read only while tiles are made. */
@@ -211,7 +211,7 @@ typedef struct gnoi_tile {
     size_t texel_count;
     float asked[GNOI_BATCH + 1][4];       /* of the batch's samples, valid once the looks are answered; sample i has texel_of[i], or none */
     uint16_t texel_of[GNOI_BATCH];
-    float even[3][GNOI_BATCH];             /* beside the batch, in textured pictures: factor that puts the texture's mean in the texel's place */
+    float judged[3][GNOI_BATCH];           /* beside the batch, in textured pictures: the texture's mean, or -1, and then the colour with it */
     float acc[3][GNOI_TILE_PIXELS];        /* sums over lines */
     float weight[GNOI_TILE_PIXELS];        /* lines that cover the pixel */
     float line_acc[GNOI_BASE_LINES][3][GNOI_TILE_PIXELS]; /* the pixel's colour on each base line */
@@ -272,9 +272,15 @@ vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, dou
 int gnoi_tile_bump_run(gnoi_tile *tile, gnoi_slot *slot, int count, const double *x, const double *y, double (*n)[GNOI_RELIEF_RUN]);
 
 /* tile_shade.c: what sample i of the batch is lit by: the normal at picture point (x,y), with bumps; texel number `texel` of those
- * asked for, if the surface is textured. */
+ * asked for, if one is shown in the row. */
 void gnoi_tile_set_normal(gnoi_tile *tile, int i, gnoi_slot *slot, int row, int column, double x, double y);
-void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone, size_t texel);
+void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone, int row, size_t texel);
+
+/* Whether texels of the surface are wanted in a row: the rows around the tile are made to be judged by, which means do. */
+static inline int gnoi_tile_shows_texel(const gnoi_tile *tile, const gnoi_tone *tone, int row)
+{
+    return tone->textured && ((row > 0 && row <= tile->height) || tone->mean[0] < 0 || tile->tinted);
+}
 void gnoi_tile_forget_texels(gnoi_tile *tile);
 
 /* tile_stack.c: what a surface that is not opaque does to what lies behind it. */

@@ -177,8 +177,8 @@ static void set_bumps(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row
 static void set_details(gnoi_tile *tile, gnoi_slot *slot, const common *c, int row, int first, int count, const places *p, int at)
 {
     for (int i = 0; i < count && tile->job->textured; i++)
-        gnoi_tile_note_texel(tile, at + i, c->tone, tile->texel_count + (size_t)i);
-    if (c->tone->textured)
+        gnoi_tile_note_texel(tile, at + i, c->tone, row, tile->texel_count + (size_t)i);
+    if (gnoi_tile_shows_texel(tile, c->tone, row))
         gnoi_tile_ask_texels(tile, slot, row, first, count, p->x, p->y);
     if (c->tone->bumped)
         set_bumps(tile, slot, c, row, first, count, p, at);

@@ -14,22 +14,17 @@ static int is_precomputed(const gnoi_slot *slot)
     return s == GNO_SHADING_CONSTANT || s == GNO_SHADING_GOURAUD;
 }
 
-/* Added to texel and mean before they are divided, and the most that comes of it. */
-#define EVEN_FLOOR 0.02f
-#define EVEN_MOST 4.0f
-
-/* 1 where there is no mean. */
-static inline float even_factor(float mean, float texel)
+/* What a pixel is judged by: a texture changes from row to row, but is filtered already; that calls for no finer lines. */
+static inline float judged_texel(float mean, float texel)
 {
-    float some = (float)(mean > 0), factor = (mean + EVEN_FLOOR) / ((texel > 0 ? texel : 0) + EVEN_FLOOR);
-    factor = some * factor + (1 - some);
-    return factor < EVEN_MOST ? factor : EVEN_MOST;
+    float some = (float)(mean >= 0);
+    return some * mean + (1 - some) * texel;
 }
 
 /* ---- into the picture --------------------------------------------------------------------------------------------- */
 
-/* `judged`: the colour by which pixels are judged, rgb itself unless the surface is textured. A texture changes from row to row,
- * but is filtered already: that calls for no finer lines. share: of each base line, the lines `stride` apart. */
+/* `judged`: the colour by which pixels are judged, rgb itself unless the surface is textured. share: of each base line, the lines
+ * `stride` apart. */
 static inline void add_colour(gnoi_tile *tile, uint32_t pixel, const float rgb[3], const float judged[3], int lines, const float *share,
                               size_t stride)
 {
@@ -53,13 +48,12 @@ VECTOR_CLONES static void divide(float *restrict length, const float *restrict a
 static void add_batch(gnoi_tile *tile)
 {
     const gnoi_batch *b = &tile->batch;
+    const float(*from)[GNOI_BATCH] = tile->job->textured ? (const float(*)[GNOI_BATCH])tile->judged : b->rgb;
     const int lines = judged_lines(tile);
     for (int i = 0; i < lines; i++)
         divide(tile->cover_by_line[i], b->coverage, b->count);
     for (int i = 0; i < b->count; i++) {
-        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]}, judged[3] = {rgb[0], rgb[1], rgb[2]};
-        for (int k = 0; k < 3 && tile->job->textured; k++)
-            judged[k] = rgb[k] * tile->even[k][i];
+        float rgb[3] = {b->rgb[0][i], b->rgb[1][i], b->rgb[2][i]}, judged[3] = {from[0][i], from[1][i], from[2][i]};
         add_colour(tile, b->tag[i], rgb, judged, lines, &tile->cover_by_line[0][i], GNOI_BATCH);
     }
 }
@@ -77,19 +71,24 @@ static void add_tinted_batch(gnoi_tile *tile)
 
 typedef float texel_values[3][GNOI_BATCH];
 
-VECTOR_CLONES static void multiply(gnoi_batch *restrict b, texel_values *restrict texels, float (*restrict even)[GNOI_BATCH])
+VECTOR_CLONES static void add_gloss(gnoi_batch *restrict b)
+{
+    for (int k = 0; k < 3; k++)
+        for (int i = 0; i < b->count; i++)
+            b->rgb[k][i] += b->gloss[k][i];
+}
+
+VECTOR_CLONES static void multiply(gnoi_batch *restrict b, texel_values *restrict texels, float (*restrict judged)[GNOI_BATCH])
 {
     for (int k = 0; k < 3; k++)
         for (int i = 0; i < b->count; i++) {
-            float texel = (*texels)[k][i];
-            even[k][i] = even_factor(even[k][i], texel);
-            b->kd[k][i] *= texel;
-            b->rgb[k][i] *= texel;
+            float matte = b->rgb[k][i], texel = (*texels)[k][i];
+            b->rgb[k][i] = matte * texel + b->gloss[k][i];
+            judged[k][i] = matte * judged_texel(judged[k][i], texel) + b->gloss[k][i];
         }
 }
 
-/* Factors of the samples' textures; tile->even holds their means until then. The last texel stays: a lamp's own part of the same pixel may
- * come in the next batch. */
+/* Factors of the samples' textures. The last texel stays: a lamp's own part of the same pixel may come in the next batch. */
 static void apply_texels(gnoi_tile *tile)
 {
     static const float plain[3] = {1, 1, 1};
@@ -100,7 +99,7 @@ static void apply_texels(gnoi_tile *tile)
         for (int k = 0; k < 3; k++)
             texels[k][i] = texel[k];
     }
-    multiply(&tile->batch, &texels, tile->even);
+    multiply(&tile->batch, &texels, tile->judged);
     if (tile->texel_count > 0)
         memcpy(tile->asked[0], tile->asked[tile->texel_count - 1], sizeof tile->asked[0]);
     tile->texel_count = tile->texel_count > 0;
@@ -109,9 +108,11 @@ static void apply_texels(gnoi_tile *tile)
 void gnoi_tile_flush(gnoi_tile *tile)
 {
     gnoi_batch *b = &tile->batch;
+    gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
     if (tile->job->textured)
         apply_texels(tile);
-    gnoi_batch_shade(b, &tile->job->view, tile->job->lamps);
+    else
+        add_gloss(b);
     if (tile->tinted)
         add_tinted_batch(tile);
     else
@@ -226,27 +227,32 @@ static void sample_precomputed(gnoi_tile *tile, gnoi_slot *slot, int row, int co
     const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
     size_t lamps = (size_t)job->lamp_count, corners = slot->receiver.poly->shading == GNO_SHADING_GOURAUD ? 3 : 1;
     double w[3], (*intensity)[3] = seek_intensities(tile, slot, x, y, w);
-    float rgb[3], judged[3], share[GNOI_BASE_LINES], coverage = cells->length[column];
+    float rgb[3], judged[3], gloss[3] = {0, 0, 0}, share[GNOI_BASE_LINES], coverage = cells->length[column];
     int lines = judged_lines(tile);
     if (!intensity)
         return;
     for (int k = 0; k < 3; k++)
-        rgb[k] = tint ? 0 : coverage * tone->ambient[k] * texel[k];
+        rgb[k] = tint ? 0 : coverage * tone->ambient[k];
     for (size_t j = 0; j < lamps; j++) {
         float lamp_weight = tile->batch.weight[j * GNOI_BATCH + (size_t)tile->batch.count];
         for (size_t i = 0; i < corners && lamp_weight > 0; i++) {
             const double(*part)[3] = (const double(*)[3])&intensity[(i * lamps + j) * INTENSITY_PARTS];
-            for (int k = 0; k < 3; k++)
-                rgb[k] += lamp_weight * (tint ? tint[k] : 1) * (float)(w[i] * (part[0][k] * (double)texel[k] + part[1][k]));
+            for (int k = 0; k < 3; k++) {
+                float weight = lamp_weight * (tint ? tint[k] : 1);
+                rgb[k] += weight * (float)(w[i] * part[0][k]);
+                gloss[k] += weight * (float)(w[i] * part[1][k]);
+            }
         }
+    }
+    for (int k = 0; k < 3; k++) {
+        judged[k] = rgb[k] * judged_texel(tone->mean[k], texel[k]) + gloss[k];
+        rgb[k] = rgb[k] * texel[k] + gloss[k];
     }
     tile->shaded++;
     if (tile->tinted) {
         gnoi_tile_add_tinted(tile, row, column, cells, tint != NULL, rgb);
         return;
     }
-    for (int k = 0; k < 3; k++)
-        judged[k] = rgb[k] * even_factor(tone->mean[k], texel[k]);
     for (int i = 0; i < lines; i++)
         share[i] = cells->by_line[i][column] / coverage;
     add_colour(tile, (uint32_t)(row * GNOI_TILE_W + column), rgb, judged, lines, share, 1);
@@ -293,11 +299,11 @@ static void set_material(gnoi_batch *b, int i, const gnoi_tone *m, float coverag
     b->shininess[i] = m->shininess;
 }
 
-void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone, size_t texel)
+void gnoi_tile_note_texel(gnoi_tile *tile, int i, const gnoi_tone *tone, int row, size_t texel)
 {
-    tile->texel_of[i] = tone->textured ? (uint16_t)texel : NO_TEXEL;
+    tile->texel_of[i] = gnoi_tile_shows_texel(tile, tone, row) ? (uint16_t)texel : NO_TEXEL;
     for (int k = 0; k < 3; k++)
-        tile->even[k][i] = tone->mean[k];
+        tile->judged[k][i] = tone->mean[k];
 }
 
 /* ---- one sample in several points ------------------------------------------------------------------------------------ */
@@ -310,7 +316,7 @@ static void copy_sample(gnoi_tile *tile, int to, int from)
         b->kd[k][to] = b->kd[k][from];
         b->ks[k][to] = b->ks[k][from];
         b->rgb[k][to] = b->rgb[k][from];
-        tile->even[k][to] = tile->even[k][from];
+        tile->judged[k][to] = tile->judged[k][from];
         for (int l = 0; l < GNOI_BASE_LINES; l++)
             tile->share_by_line[l][k][to] = tile->share_by_line[l][k][from];
     }
@@ -352,21 +358,21 @@ void gnoi_tile_sample(gnoi_tile *tile, gnoi_slot *slot, int row, int column, con
     double x = tile->x0 + column + 0.5 + (double)(cells->mx[column] / coverage);
     double y = tile->y0 + row - 0.5 + (double)(cells->my[column] / coverage);
     const gnoi_tone *tone = &job->tones[slot->receiver.poly->material];
-    int i = b->count;
+    int i = b->count, shows = gnoi_tile_shows_texel(tile, tone, row);
     if (is_precomputed(slot)) {
         static const float plain[3] = {1, 1, 1};
-        if (tone->textured && !tint)
+        if (shows && !tint)
             gnoi_tile_set_texel(tile, slot, row, column, x, y);
-        sample_precomputed(tile, slot, row, column, x, y, cells, tint, tone->textured ? tile->texel : plain);
+        sample_precomputed(tile, slot, row, column, x, y, cells, tint, shows ? tile->texel : plain);
         return;
     }
-    if (tone->textured && !tint)
+    if (shows && !tint)
         gnoi_tile_ask_texel(tile, slot, row, column, x, y);
     set_point(b, i, &job->view, &slot->receiver.nearness, x, y);
     gnoi_tile_set_normal(tile, i, slot, row, column, x, y);
     set_material(b, i, tone, coverage, tint);
     if (job->textured)
-        gnoi_tile_note_texel(tile, i, tone, tile->texel_count - 1);
+        gnoi_tile_note_texel(tile, i, tone, row, tile->texel_count - 1);
     if (tile->tinted)
         gnoi_tile_tint_sample(tile, i, column, cells, tint != NULL);
     b->coverage[i] = coverage;

@@ -15,7 +15,7 @@
  * the exponents 4/3 (random) and 2 (edge along the elements). */
 static inline int gnoi_filter_is_small(double area, double tolerance, float spread)
 {
-    double s = (double)spread;
+    double s = 2 * (double)spread;
     return area * area * (s * s * s) <= 4 * (tolerance * tolerance * tolerance);
 }
 

@@ -101,13 +101,15 @@ static int side(int elements, int level, int i)
     return (to < elements ? to : elements) - from;
 }
 
+static inline float larger(float a, float b) { return a > b ? a : b; }
+
 /* A cell's mean over its up to four children, weighted by their sizes, and its spread. */
 static void make_cell(const gnoi_image *image, int l, int x, int y)
 {
     const gnoi_image_level *level = &image->level[l], *below = &image->level[l - 1];
     size_t at = (size_t)y * (size_t)level->width + (size_t)x;
     int columns = 2 * x + 1 < below->width ? 2 : 1, rows = 2 * y + 1 < below->height ? 2 : 1;
-    float value[4][4], spread[4], weight[4], total = 0, widest = 0;
+    float value[4][4], spread[4], weight[4], total = 0, inner = 0, outer[4] = {0, 0, 0, 0};
     for (int c = 0; c < 4; c++) {
         int i = 2 * x + c % 2, j = 2 * y + c / 2, is_there = c % 2 < columns && c / 2 < rows;
         i = is_there ? i : 2 * x;
@@ -119,26 +121,29 @@ static void make_cell(const gnoi_image *image, int l, int x, int y)
     }
     for (int k = 0; k < 4; k++)
         level->mean[at][k] = (weight[0] * value[0][k] + weight[1] * value[1][k] + weight[2] * value[2][k] + weight[3] * value[3][k]) / total;
-    for (int c = 0; c < 4; c++)
+    for (int c = 0; c < 4; c++) {
+        inner += weight[c] * spread[c] * spread[c];
         for (int k = 0; k < 4; k++) {
-            float far_off = fabsf(value[c][k] - level->mean[at][k]) + spread[c];
-            widest = far_off > widest ? far_off : widest;
+            float off = value[c][k] - level->mean[at][k];
+            outer[k] += weight[c] * off * off;
         }
-    level->spread[at] = widest;
+    }
+    level->spread[at] = sqrtf((inner + larger(larger(outer[0], outer[1]), larger(outer[2], outer[3]))) / total);
 }
 
-static inline float larger(float a, float b) { return a > b ? a : b; }
 
 /* The same for one with four children of one size. */
 static inline void make_whole_cell(float value[4][4], const float spread[4], float mean[4], float *widest)
 {
-    float far_off[4];
+    float outer[4], inner;
     for (int k = 0; k < 4; k++)
         mean[k] = (value[0][k] + value[1][k] + value[2][k] + value[3][k]) * 0.25f;
-    for (int k = 0; k < 4; k++)
-        far_off[k] = larger(larger(fabsf(value[0][k] - mean[k]) + spread[0], fabsf(value[1][k] - mean[k]) + spread[1]),
-                            larger(fabsf(value[2][k] - mean[k]) + spread[2], fabsf(value[3][k] - mean[k]) + spread[3]));
-    *widest = larger(larger(far_off[0], far_off[1]), larger(far_off[2], far_off[3]));
+    for (int k = 0; k < 4; k++) {
+        float a = value[0][k] - mean[k], b = value[1][k] - mean[k], c = value[2][k] - mean[k], d = value[3][k] - mean[k];
+        outer[k] = (a * a + b * b) + (c * c + d * d);
+    }
+    inner = (spread[0] * spread[0] + spread[1] * spread[1]) + (spread[2] * spread[2] + spread[3] * spread[3]);
+    *widest = sqrtf((inner + larger(larger(outer[0], outer[1]), larger(outer[2], outer[3]))) * 0.25f);
 }
 
 /* The first cells of row y of level l: as many of them as have four children of one size, whose number is returned. */

@@ -81,7 +81,7 @@ INLINE void add_lamp(gnoi_batch *restrict b, int count, const float *restrict we
                      int from_viewer, int smooth)
 {
     for (int i = 0; i < count; i++) {
-        float lx = v.x, ly = v.y, lz = v.z, f = 1.0f, d = 0.0f, nl, ns, ls, rs, facing, diffuse, spec, w;
+        float lx = v.x, ly = v.y, lz = v.z, f = 1.0f, d = 0.0f, nl, ns, ls, rs, facing, w, diffuse, spec;
         if (!directional) {
             float q;
             lx -= b->px[i];
@@ -102,9 +102,7 @@ INLINE void add_lamp(gnoi_batch *restrict b, int count, const float *restrict we
         ls = lx * b->sx[i] + ly * b->sy[i] + lz * b->sz[i];
         rs = 2.0f * nl * ns - ls;
         facing = above(nl, 0.0f);
-        diffuse = facing * nl;
-        spec = facing * power(rs, b->shininess[i]);
-        w = weight[i] * f;
+        w = weight[i] * f * facing;
         if (smooth) {
             float gl = b->gx[i] * lx + b->gy[i] * ly + b->gz[i] * lz;
             float gn = b->gx[i] * b->nx[i] + b->gy[i] * b->ny[i] + b->gz[i] * b->nz[i];
@@ -114,9 +112,14 @@ INLINE void add_lamp(gnoi_batch *restrict b, int count, const float *restrict we
             g *= above(g, 0.0f);
             w *= g * (1.0f + g - g * g);
         }
-        b->rgb[0][i] += w * v.r * (b->kd[0][i] * diffuse + b->ks[0][i] * spec);
-        b->rgb[1][i] += w * v.g * (b->kd[1][i] * diffuse + b->ks[1][i] * spec);
-        b->rgb[2][i] += w * v.b * (b->kd[2][i] * diffuse + b->ks[2][i] * spec);
+        diffuse = w * nl;
+        spec = w * power(rs, b->shininess[i]);
+        b->rgb[0][i] += diffuse * v.r * b->kd[0][i];
+        b->rgb[1][i] += diffuse * v.g * b->kd[1][i];
+        b->rgb[2][i] += diffuse * v.b * b->kd[2][i];
+        b->gloss[0][i] += spec * v.r * b->ks[0][i];
+        b->gloss[1][i] += spec * v.g * b->ks[1][i];
+        b->gloss[2][i] += spec * v.b * b->ks[2][i];
     }
 }
 
@@ -154,6 +157,7 @@ void gnoi_batch_shade(gnoi_batch *b, const gnoi_view *view, const gnoi_lamp *lam
         for (int k = 0; k < 3; k++)
             b->kd[k][i] = b->ks[k][i] = b->rgb[k][i] = 0;
     }
+    memset(b->gloss, 0, sizeof b->gloss);
     prepare(b, count, view->orthographic, (float)view->forward.x, (float)view->forward.y, (float)view->forward.z);
     for (int j = 0; j < b->lamp_count; j++) {
         const gnoi_lamp *lamp = &lamps[j];

@@ -25,12 +25,13 @@ typedef struct gnoi_batch {
     float nx[GNOI_BATCH], ny[GNOI_BATCH], nz[GNOI_BATCH]; /* normal on the viewer's side, any length */
     float gx[GNOI_BATCH], gy[GNOI_BATCH], gz[GNOI_BATCH]; /* plane normal on the viewer's side, unit; read for a smooth terminator */
     float kd[3][GNOI_BATCH], ks[3][GNOI_BATCH], shininess[GNOI_BATCH];
-    float rgb[3][GNOI_BATCH];             /* ambient term on entry, the sum on return */
+    float rgb[3][GNOI_BATCH];             /* ambient term on entry, with the diffuse terms on return: what a texture is a factor of */
+    float gloss[3][GNOI_BATCH];           /* the specular terms, on return */
     uint32_t tag[GNOI_BATCH];             /* the caller's */
     float sx[GNOI_BATCH], sy[GNOI_BATCH], sz[GNOI_BATCH], distance[GNOI_BATCH]; /* scratch: to the viewer */
 } gnoi_batch;
 
-/* Adds every lamp's diffuse and specular terms, weighted, to rgb. Normals become unit on the way. */
+/* Adds every lamp's diffuse terms, weighted, to rgb, and sums up the specular ones. Normals become unit on the way. */
 void gnoi_batch_shade(gnoi_batch *batch, const gnoi_view *view, const gnoi_lamp *lamps);
 
 /* Diffuse and specular sums of one point for one lamp without weight, in double precision, for intensities taken at
