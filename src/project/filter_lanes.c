@@ -19,7 +19,8 @@ typedef struct border {
     gnoi_filter_lane_values x[4], y[4];
 } border;
 
-/* What a row leaves of the edges: x of the left and of the right end, height, y of the left end and of the middle, from t. */
+/* What a row leaves of the edges: x of the left and of the right end, height with the sign of the turn, y of the left end and of the
+ * middle, from t. */
 typedef struct stretches {
     gnoi_filter_lane_values left[4], right[4], height[4], left_y[4], middle_y[4];
     gnoi_filter_lane_values low, high; /* least and largest x */
@@ -46,7 +47,7 @@ INLINE void cut_edges(const gnoi_filter_lanes *restrict l, const border *restric
             float off = 2.0f * FAR * (float)(from->y[e][i] == to->y[e][i]);
             s->left[e][i] = gnoi_lesser(from->x[e][i], to->x[e][i]);
             s->right[e][i] = gnoi_greater(from->x[e][i], to->x[e][i]);
-            s->height[e][i] = to->y[e][i] - from->y[e][i];
+            s->height[e][i] = l->turn[e][i] * (to->y[e][i] - from->y[e][i]);
             s->low[i] = gnoi_lesser(s->low[i], s->left[e][i] + off);
             s->high[i] = gnoi_greater(s->high[i], s->right[e][i] - off);
         }
@@ -91,14 +92,13 @@ INLINE void choose_columns(const gnoi_filter_lanes *restrict l, const stretches 
 }
 
 /* Along a stretch u = max(line - x, 0) runs from `near` at its right end to near + d at its left one, the second part of it over twice
- * `over` of its height. Left of the line, the area is the sum of heights times the mean of u. */
+ * d half_rise of its height. Left of the line, the area is the sum of heights times the mean of u. */
 INLINE float even_sum(const gnoi_filter_lanes *restrict l, const stretches *restrict s, float line, int i)
 {
     float sum = 0;
     for (int e = 0; e < 4; e++) {
-        float wide = gnoi_greater(line, s->left[e][i]) - s->left[e][i], near = gnoi_greater(line, s->right[e][i]) - s->right[e][i];
-        float over = gnoi_lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]);
-        sum += l->turn[e][i] * (s->height[e][i] * near + (wide - near) * over);
+        float near = gnoi_greater(line, s->right[e][i]) - s->right[e][i], d = within(line, s->left[e][i], s->right[e][i]) - s->left[e][i];
+        sum += s->height[e][i] * near + d * (d * l->turned_rise[e][i]);
     }
     return sum;
 }
@@ -108,12 +108,12 @@ INLINE float uneven_sum(const gnoi_filter_lanes *restrict l, const stretches *re
 {
     float part = 0, by_y = 0, square = 0, rest = 0;
     for (int e = 0; e < 4; e++) {
-        float wide = gnoi_greater(line, s->left[e][i]) - s->left[e][i], near = gnoi_greater(line, s->right[e][i]) - s->right[e][i], d = wide - near;
-        float over = gnoi_lesser(wide * l->half_rise[e][i], 0.5f * s->height[e][i]), lean = (1.0f - 2.0f * l->rightward[e][i]) * (2.0f / 3.0f);
-        float a = l->turn[e][i] * s->height[e][i] * near, b = l->turn[e][i] * (d * over);
+        float near = gnoi_greater(line, s->right[e][i]) - s->right[e][i], d = within(line, s->left[e][i], s->right[e][i]) - s->left[e][i];
+        float lean = (1.0f - 2.0f * l->rightward[e][i]) * (2.0f / 3.0f);
+        float a = s->height[e][i] * near, b = d * (d * l->turned_rise[e][i]);
         part += a + b;
-        by_y += a * s->middle_y[e][i] + b * (s->left_y[e][i] - over * lean);
-        square += a * wide;
+        by_y += a * s->middle_y[e][i] + b * (s->left_y[e][i] - d * l->half_rise[e][i] * lean);
+        square += a * (near + d);
         rest += b * d;
     }
     square = 0.5f * square + rest * (1.0f / 3.0f);
@@ -193,6 +193,7 @@ VECTOR_CLONES static void start(gnoi_filter_lanes *l)
             k = 1.0f / (wide * high); /* one division for two */
             l->slope[c][i] = (1.0f - level) * dx * (wide * k);
             l->half_rise[c][i] = 0.5f * dy * (high * k);
+            l->turned_rise[c][i] = l->turn[c][i] * l->half_rise[c][i];
             l->rightward[c][i] = (float)(dx > 0.0f);
         }
     l->uneven = 0;

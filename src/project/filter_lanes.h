@@ -34,7 +34,7 @@ typedef struct gnoi_filter_lanes {
     int rows[GNOI_FILTER_LANES];                          /* of cells under the quadrilateral, the first of them next */
     gnoi_filter_lane_values first_row;
     gnoi_filter_lane_values x[4], y[4], end_y[4], turn[4]; /* edges from their upper end; 1 or -1: that is the first one */
-    gnoi_filter_lane_values slope[4], half_rise[4], rightward[4]; /* dx/dy, |dy/dx| / 2, whether the lower end is the right one */
+    gnoi_filter_lane_values slope[4], half_rise[4], turned_rise[4], rightward[4]; /* dx/dy, |dy/dx| / 2, that times turn, whether the lower end is the right one */
     gnoi_filter_lane_values low_x, high_x, first_column;
     int columns[GNOI_FILTER_LANES];         /* under it in any row */
     gnoi_filter_lane_values gain_x, gain_y; /* areas in the picture change with the place by this share of the middle's; given if uneven */
