@@ -95,14 +95,13 @@ void gnoi_tile_ask_texels(gnoi_tile *tile, gnoi_slot *slot, int row, int first, 
     gnoi_mapping *mapping = seek_mappings(tile, slot);
     const gnoi_pattern *pattern = mapping ? gnoi_mapping_seek(mapping, &sight, texture, x[0], y[0]) : NULL;
     int is_one = mapping && is_one_pattern(mapping, &slot->interp, x[count - 1], y[count - 1]);
-    for (int i = 0; i < count; i++, tile->texel_count++) {
-        double middle_x = tile->x0 + first + i + 0.5, middle_y = tile->y0 + row - 0.5;
-        float *texel = tile->asked[tile->texel_count];
-        if (is_one)
-            gnoi_looks_ask(&tile->looks, &tile->job->scene->images[texture->image], texture, pattern, middle_x, middle_y, x[i], y[i], texel);
-        else if (mapping)
-            gnoi_texture_ask(&sight, texture, mapping, middle_x, middle_y, x[i], y[i], &tile->looks, texel);
-    }
+    double middle_x = tile->x0 + first + 0.5, middle_y = tile->y0 + row - 0.5;
+    float(*texel)[4] = &tile->asked[tile->texel_count];
+    if (is_one)
+        gnoi_looks_ask(&tile->looks, &tile->job->scene->images[texture->image], texture, pattern, middle_x, middle_y, count, x, y, texel);
+    for (int i = 0; i < count && mapping && !is_one; i++)
+        gnoi_texture_ask(&sight, texture, mapping, middle_x + i, middle_y, x[i], y[i], &tile->looks, texel[i]);
+    tile->texel_count += (size_t)count;
 }
 
 vec3 gnoi_tile_bumped(gnoi_tile *tile, gnoi_slot *slot, int row, int column, double x, double y, vec3 n)

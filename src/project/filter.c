@@ -1,6 +1,5 @@
 /* filter.c -- see filter.h. */
 #include "project/filter.h"
-#include "base/fetch.h"
 #include "project/filter_cut.h"
 #include "project/filter_lanes.h"
 #include <math.h>
@@ -57,10 +56,10 @@ static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, i
 static void add_values(const gnoi_look *look, int l, int column, int row, const gnoi_filter_lane_row *cells, int lane, float sum[4])
 {
     const gnoi_image_level *level = &look->image->level[l];
-    int j = wrapped(row, level->height, (gno_wrap)look->wrap);
+    int j = wrapped(row, level->height, look->how->wrap);
     for (int c = 0; c < cells->columns[lane]; c++) {
         float area = cells->area[c][lane], value[4] = {1, 1, 1, 1};
-        int i = wrapped(column + c, level->width, (gno_wrap)look->wrap);
+        int i = wrapped(column + c, level->width, look->how->wrap);
         if (i >= 0 && j >= 0)
             gnoi_image_value(look->image, l, i, j, value);
         for (int k = 0; k < 4; k++)
@@ -89,9 +88,10 @@ static void answer_in_cell(const gnoi_looks *looks, int which)
 {
     const gnoi_look *look = &looks->look[which];
     const gnoi_look_lanes *l = &looks->lanes;
-    int level = level_of(looks, which), wrap = look->wrap;
-    int i = wrapped(l->column[which] - (l->s[which] < 0), look->image->level[level].width, (gno_wrap)wrap);
-    int j = wrapped(l->row[which] - (l->t[which] < 0), look->image->level[level].height, (gno_wrap)wrap);
+    int level = level_of(looks, which);
+    gno_wrap wrap = look->how->wrap;
+    int i = wrapped(l->column[which] - (l->s[which] < 0), look->image->level[level].width, wrap);
+    int j = wrapped(l->row[which] - (l->t[which] < 0), look->image->level[level].height, wrap);
     float value[4] = {1, 1, 1, 1};
     if (i >= 0 && j >= 0)
         gnoi_image_value(look->image, level, i, j, value);
@@ -111,21 +111,11 @@ static void load(const gnoi_look_lanes *from, const unsigned short *which, int c
     }
 }
 
-/* Elements lie far apart: they are on their way while areas are found. */
-static void fetch_rows(const gnoi_looks *looks, int look, const gnoi_filter_lanes *lanes, int lane)
-{
-    const gnoi_image *image = looks->look[look].image;
-    int column = looks->lanes.column[look] + (int)lanes->low_x[lane], row = looks->lanes.row[look] + (int)lanes->first_row[lane];
-    if (image->is_solid && column >= 0 && column < image->width && row >= 0 && row + lanes->rows[lane] <= image->height)
-        for (int r = 0; r < lanes->rows[lane]; r++, row++)
-            FETCH(&image->bytes[(size_t)row * (size_t)image->width + (size_t)column]);
-}
-
 /* Whether `count` rows are rows of the picture, one after the other, the first one after the last. */
 static int rows_follow(const gnoi_look *look, int row, int count)
 {
     int height = look->image->height;
-    return (row >= 0 && row + count <= height) || (look->wrap == GNO_WRAP_REPEAT && row >= -height && row < height && count <= height);
+    return (row >= 0 && row + count <= height) || (look->how->wrap == GNO_WRAP_REPEAT && row >= -height && row < height && count <= height);
 }
 
 static void answer_together(const gnoi_looks *looks, const unsigned short *which, int count)
@@ -140,8 +130,6 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
     gnoi_filter_lanes_start(&lanes);
     for (int i = 0; i < count; i++)
         rows = lanes.rows[i] > rows ? lanes.rows[i] : rows;
-    for (int i = 0; i < count; i++)
-        fetch_rows(looks, which[i], &lanes, i);
     for (int r0 = 0; r0 < rows; r0 += ROWS) {
         int n = rows - r0 < ROWS ? rows - r0 : ROWS, most = 0;
         gnoi_filter_lanes_rows(&lanes, r0, n, cells);
@@ -302,7 +290,7 @@ static void add_look(gnoi_looks *looks, const gnoi_look *of, const view *v, int 
 {
     int i = looks->end++;
     gnoi_look_lanes *to = &looks->lanes;
-    double k = 1.0 / (1 << level), s = k * home(v->s, of->image->width, (gno_wrap)of->wrap), t = k * home(v->t, of->image->height, (gno_wrap)of->wrap);
+    double k = 1.0 / (1 << level), s = k * home(v->s, of->image->width, of->how->wrap), t = k * home(v->t, of->image->height, of->how->wrap);
     looks->look[i] = *of;
     looks->part[i - GNOI_ASKED].share = (float)share;
     looks->part[i - GNOI_ASKED].level = level;
@@ -441,7 +429,7 @@ static gnoi_screen_plane scaled(const gnoi_screen_plane *f, double factor)
     return around(factor * f->f0, factor * f->fx, factor * f->fy);
 }
 
-static void cut(const gnoi_look *of, const gnoi_asked *asked, const view *enlarged, const gnoi_pattern *p)
+static void cut(const gnoi_look *of, double xs, double ys, const view *enlarged, const gnoi_pattern *p)
 {
     const gnoi_image *image = of->image;
     gnoi_screen_plane s = scaled(&p->s, image->width), t = scaled(&p->t, image->height), w = p->w;
@@ -450,18 +438,18 @@ static void cut(const gnoi_look *of, const gnoi_asked *asked, const view *enlarg
         t = around(enlarged->t, enlarged->tx, enlarged->ty);
         w = around(1, 0, 0);
     }
-    if (gnoi_filter_cut(image, asked->how->wrap, &s, &t, &w, of->mean))
+    if (gnoi_filter_cut(image, of->how->wrap, &s, &t, &w, of->mean))
         return;
-    s = around(image->width * gnoi_plane_at(&p->s, asked->xs, asked->ys), 0, 0);
-    t = around(image->height * gnoi_plane_at(&p->t, asked->xs, asked->ys), 0, 0);
-    w = around(gnoi_plane_at(&p->w, asked->xs, asked->ys), 0, 0);
-    gnoi_filter_cut(image, asked->how->wrap, &s, &t, &w, of->mean);
+    s = around(image->width * gnoi_plane_at(&p->s, xs, ys), 0, 0);
+    t = around(image->height * gnoi_plane_at(&p->t, xs, ys), 0, 0);
+    w = around(gnoi_plane_at(&p->w, xs, ys), 0, 0);
+    gnoi_filter_cut(image, of->how->wrap, &s, &t, &w, of->mean);
 }
 
 /* Whatever the pixel is like. */
-static void look_closer(gnoi_looks *looks, const gnoi_look *of, const gnoi_asked *asked, const gnoi_pattern *p)
+static void look_closer(gnoi_looks *looks, const gnoi_look *of, double xs, double ys, const gnoi_pattern *p)
 {
-    const gno_texture *how = asked->how;
+    const gno_texture *how = of->how;
     view v = view_at(of->image, p, 0, 0);
     int enlarged = how->filter == GNO_FILTER_LINEAR && v.w > 0 && enlarge(&v), level, across, down;
     thicken(&v);
@@ -473,7 +461,7 @@ static void look_closer(gnoi_looks *looks, const gnoi_look *of, const gnoi_asked
             return;
         }
     }
-    cut(of, asked, enlarged ? &v : NULL, p);
+    cut(of, xs, ys, enlarged ? &v : NULL, p);
 }
 
 static inline double period_of(const gno_texture *how)
@@ -501,38 +489,41 @@ static void take(gnoi_looks *looks)
                 answer_looks(looks, 0);
                 looks->end = GNOI_ASKED;
             }
-            look_closer(looks, l, &looks->asked[i], &p);
+            look_closer(looks, l, looks->xs[i], looks->ys[i], &p);
         }
     }
 }
 
-void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y,
-                    double xs, double ys, float mean[4])
+/* As many as there is room for among the views. */
+static int ask_some(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y, int count,
+                    const double *xs, const double *ys, float (*mean)[4])
 {
-    gnoi_views *v = &looks->views;
-    gnoi_look *l;
-    int i;
-    if (looks->count == GNOI_ASKED)
-        gnoi_looks_answer(looks);
-    if (looks->count == 0)
-        looks->end = GNOI_ASKED;
-    i = looks->count++;
-    l = &looks->look[i];
-    l->image = image;
-    l->mean = mean;
-    l->wrap = (int)how->wrap;
-    i %= GNOI_VIEWS;
-    looks->asked[i].how = how;
-    looks->asked[i].xs = xs - x;
-    looks->asked[i].ys = ys - y;
-    v->s[i] = gnoi_plane_at(&p->s, x, y), v->sx[i] = p->s.fx, v->sy[i] = p->s.fy;
-    v->t[i] = gnoi_plane_at(&p->t, x, y), v->tx[i] = p->t.fx, v->ty[i] = p->t.fy;
-    v->w[i] = gnoi_plane_at(&p->w, x, y), v->wx[i] = p->w.fx, v->wy[i] = p->w.fy;
-    v->width[i] = image->width;
-    v->height[i] = image->height;
-    v->period[i] = period_of(how);
-    if (i + 1 == GNOI_VIEWS)
+    int place = looks->count % GNOI_VIEWS, some = count < GNOI_VIEWS - place ? count : GNOI_VIEWS - place;
+    gnoi_look *l = &looks->look[looks->count];
+    gnoi_views_set(&looks->views, place, p, x, y, image->width, image->height, period_of(how));
+    for (int i = 0; i < some; i++) {
+        l[i].image = image;
+        l[i].how = how;
+        l[i].mean = mean[i];
+        looks->xs[place + i] = xs[i] - (x + i);
+        looks->ys[place + i] = ys[i] - y;
+    }
+    looks->count += some;
+    if (looks->count % GNOI_VIEWS == 0)
         take(looks);
+    return some;
+}
+
+void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *p, double x, double y, int count,
+                    const double *xs, const double *ys, float (*mean)[4])
+{
+    for (int i = 0; i < count;) {
+        if (looks->count == GNOI_ASKED)
+            gnoi_looks_answer(looks);
+        if (looks->count == 0)
+            looks->end = GNOI_ASKED;
+        i += ask_some(looks, image, how, p, x + i, y, count - i, xs + i, ys + i, mean + i);
+    }
 }
 
 void gnoi_looks_answer(gnoi_looks *looks)
@@ -550,6 +541,6 @@ void gnoi_filter_pixel(const gnoi_image *image, const gno_texture *how, const gn
 {
     gnoi_looks looks;
     looks.count = 0;
-    gnoi_looks_ask(&looks, image, how, p, x, y, xs, ys, mean);
+    gnoi_looks_ask(&looks, image, how, p, x, y, 1, &xs, &ys, (float(*)[4])mean);
     gnoi_looks_answer(&looks);
 }

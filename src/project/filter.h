@@ -18,21 +18,15 @@
 /* Of which pixel a look is. */
 typedef struct gnoi_look {
     const gnoi_image *image;
-    float *mean;      /* where its share of the pixel's mean is added */
-    int wrap;
-} gnoi_look;
-
-/* What else is known of a pixel that is asked for. */
-typedef struct gnoi_asked {
     const gno_texture *how;
-    double xs, ys;    /* from its centre */
-} gnoi_asked;
+    float *mean; /* where its share of the pixel's mean is added */
+} gnoi_look;
 
 typedef struct gnoi_looks {
     int count;              /* pixels asked for; 0 to begin with */
     int end;                /* of looks beyond theirs; valid while some are asked for */
     gnoi_views views;       /* of the last of them */
-    gnoi_asked asked[GNOI_VIEWS];
+    gnoi_view_values xs, ys; /* beside them: where the surface is seen, from the pixel's centre */
     gnoi_look_lanes lanes;  /* of the pixels; from GNOI_ASKED on of parts of those that are not plain */
     gnoi_look look[GNOI_LOOKS];
     struct {
@@ -41,11 +35,12 @@ typedef struct gnoi_looks {
     } part[GNOI_LOOKS - GNOI_ASKED];
 } gnoi_looks;
 
-/* Asks for the mean over the pixel whose centre is (x,y), the square of side 1 around it; red, green, blue multiplied by alpha.
- * Beyond the plane's horizon nothing counts. (xs,ys): a point where the surface is seen, for pixels that have nothing else.
- * mean is there after gnoi_looks_answer, and must stay in its place until then. */
+/* Asks for the means over `count` neighbouring pixels, at most GNOI_VIEW_RUN: the first one's centre is (x,y), each is the square of side 1
+ * around its centre; red, green, blue multiplied by alpha. Beyond the plane's horizon nothing counts. (xs[i],ys[i]): a point where
+ * the surface is seen, for pixels that have nothing else. mean[i] is there after gnoi_looks_answer, and must stay in its place until
+ * then, as `how` must. */
 void gnoi_looks_ask(gnoi_looks *looks, const gnoi_image *image, const gno_texture *how, const gnoi_pattern *pattern, double x, double y,
-                    double xs, double ys, float mean[4]);
+                    int count, const double *xs, const double *ys, float (*mean)[4]);
 void gnoi_looks_answer(gnoi_looks *looks);
 
 /* Both for one pixel. */

@@ -100,6 +100,32 @@ static void pad(gnoi_views *a, int count)
     }
 }
 
+VECTOR_CLONES static void set(gnoi_views *restrict v, int first, const gnoi_pattern *restrict pattern, double x, double y)
+{
+    const gnoi_pattern p = *pattern;
+    for (int i = 0; i < GNOI_VIEW_RUN; i++) {
+        v->s[first + i] = gnoi_plane_at(&p.s, x + i, y);
+        v->t[first + i] = gnoi_plane_at(&p.t, x + i, y);
+        v->w[first + i] = gnoi_plane_at(&p.w, x + i, y);
+        v->sx[first + i] = p.s.fx;
+        v->sy[first + i] = p.s.fy;
+        v->tx[first + i] = p.t.fx;
+        v->ty[first + i] = p.t.fy;
+        v->wx[first + i] = p.w.fx;
+        v->wy[first + i] = p.w.fy;
+    }
+}
+
+void gnoi_views_set(gnoi_views *v, int first, const gnoi_pattern *pattern, double x, double y, double width, double height, double period)
+{
+    set(v, first, pattern, x, y);
+    for (int i = 0; i < GNOI_VIEW_RUN; i++) {
+        v->width[first + i] = width;
+        v->height[first + i] = height;
+        v->period[first + i] = period;
+    }
+}
+
 void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int first)
 {
     int whole = (count + STEP - 1) / STEP * STEP;

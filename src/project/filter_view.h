@@ -7,6 +7,7 @@
 #define GNOI_PROJECT_FILTER_VIEW_H
 
 #include "project/filter_lanes.h"
+#include "project/pattern.h"
 #include <stdint.h>
 
 #define GNOI_VIEWS 64   /* pixels at once: few enough for the nearest cache */
@@ -19,7 +20,10 @@
 #define GNOI_LEAST_LENGTH 1e-8
 #define GNOI_FAR_ELEMENTS 1e9     /* of int's range */
 
-typedef double gnoi_view_values[GNOI_VIEWS];
+/* Neighbouring pixels of one pattern; arrays have room for a whole run at the last place. */
+#define GNOI_VIEW_RUN 8
+
+typedef double gnoi_view_values[GNOI_VIEWS + GNOI_VIEW_RUN];
 
 /* Numerators and divisor of the pattern at the pixels' middles, what one width and one height of a pixel changes them by, and the
  * picture's extents in elements. */
@@ -42,6 +46,9 @@ typedef struct gnoi_look_lanes {
 #define GNOI_LOOK_SIZES 13
 #define GNOI_LOOK_KINDS (2 * GNOI_LOOK_SIZES * GNOI_LOOK_SIZES)
 #define GNOI_LOOK_IN_CELL 0 /* the kind of those that lie within one cell */
+
+/* Pixels from place `first` on: the first one's middle is (x,y), the others follow to its right; GNOI_VIEW_RUN are written. */
+void gnoi_views_set(gnoi_views *views, int first, const gnoi_pattern *pattern, double x, double y, double width, double height, double period);
 
 /* Finds the looks of `count` pixels, from place `first` on. Both are written up to the next multiple of 16. */
 void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int first);

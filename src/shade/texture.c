@@ -118,5 +118,5 @@ void gnoi_texture_ask(const gnoi_sight *sight, const gno_texture *texture, gnoi_
                       double ys, gnoi_looks *looks, float rgba[4])
 {
     const gnoi_pattern *pattern = gnoi_mapping_seek(mapping, sight, texture, xs, ys);
-    gnoi_looks_ask(looks, &sight->scene->images[texture->image], texture, pattern, x, y, xs, ys, rgba);
+    gnoi_looks_ask(looks, &sight->scene->images[texture->image], texture, pattern, x, y, 1, &xs, &ys, (float(*)[4])rgba);
 }

@@ -126,6 +126,7 @@ static double worst(picture_kind kind, int width, int height, gno_wrap wrap, dou
 {
     gno_context *context = NULL;
     gno_texture how = gno_texture_default(GNO_MAP_UV);
+    const double middle = 0;
     double largest = 0;
     float *values, fast[MOST_ROUNDS][4];
     gnoi_pattern patterns[MOST_ROUNDS];
@@ -137,7 +138,7 @@ static double worst(picture_kind kind, int width, int height, gno_wrap wrap, dou
     looks.count = 0;
     for (int i = 0; i < rounds; i++) {
         patterns[i] = random_pattern(width, height, size * random_between(0.5, 2), slant * random_between(0.7, 1.4), bend * random_unit());
-        gnoi_looks_ask(&looks, &image, &how, &patterns[i], 0, 0, 0, 0, fast[i]);
+        gnoi_looks_ask(&looks, &image, &how, &patterns[i], 0, 0, 1, &middle, &middle, &fast[i]);
     }
     gnoi_looks_answer(&looks);
     for (int i = 0; i < rounds; i++) {
