@@ -52,9 +52,9 @@ soname = -Wl,-soname,$(1).so.$(SOMAJOR)
 # OpenEXRCore is the C part of OpenEXR; its pkg-config module would link all the C++ libraries too, so only the include
 # path is taken from there.
 pkg = $(shell $(PKGCONFIG) $(1) 2>/dev/null || echo $(2))
-IO_CFLAGS := $(call pkg,--cflags yaml-0.1 assimp libpng cairo-pdf,-I/usr/include/libpng16 -I/usr/include/cairo) \
+IO_CFLAGS := $(call pkg,--cflags yaml-0.1 assimp libpng libdeflate cairo-pdf,-I/usr/include/libpng16 -I/usr/include/cairo) \
              $(filter -I%,$(call pkg,--cflags OpenEXR,-I/usr/include/OpenEXR -I/usr/include/Imath))
-IO_LIBS   := $(call pkg,--libs yaml-0.1 assimp libpng cairo-pdf,-lyaml -lassimp -lpng -lcairo) -lOpenEXRCore
+IO_LIBS   := $(call pkg,--libs yaml-0.1 assimp libpng libdeflate cairo-pdf,-lyaml -lassimp -lpng -ldeflate -lcairo) -lOpenEXRCore
 TEST_LIBS := $(call pkg,--libs cmocka,-lcmocka)
 
 VERSION := $(shell sed -n 's/^.define GNO_VERSION_[A-Z]* \([0-9]*\)/\1/p' include/gnomon/gnomon.h | paste -sd.)
@@ -185,7 +185,7 @@ $(BUILD)/gnomon-io.pc: FORCE
 	@mkdir -p $(@D)
 	@printf '%s\n' 'prefix=$(PREFIX)' 'libdir=$(LIBDIR)' 'includedir=$(INCLUDEDIR)' '' 'Name: gnomon-io' \
 	 'Description: scene files in and pictures out for gnomon' 'Version: $(VERSION)' 'Requires: gnomon' \
-	 'Requires.private: yaml-0.1 assimp libpng cairo-pdf' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lgnomon-io' \
+	 'Requires.private: yaml-0.1 assimp libpng libdeflate cairo-pdf' 'Cflags: -I$${includedir}' 'Libs: -L$${libdir} -lgnomon-io' \
 	 'Libs.private: -lOpenEXRCore -lm' > $@
 
 -include $(patsubst %.o,%.d,$(ENGINE_OBJ) $(IO_OBJ) $(CLI_OBJ) $(SUPPORT_OBJ) $(TEST_OBJ) $(HOSTILE_OBJ))
@@ -314,7 +314,7 @@ bench: all
 
 # ---- system packages -----------------------------------------------------------------------------------------------
 PACKAGES := $(if $(filter gcc clang,$(CC)),$(CC)) libc6-dev make pkg-config \
-            libyaml-dev libassimp-dev libpng-dev libopenexr-dev libcairo2-dev libcmocka-dev
+            libyaml-dev libassimp-dev libpng-dev libdeflate-dev libopenexr-dev libcairo2-dev libcmocka-dev
 
 deps:
 	@if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then \

@@ -1,6 +1,6 @@
 /* gnomon_io.h -- files for gnomon: scenes and meshes in, pictures and drawings out. Library libgnomon-io.
  *
- * Needs libyaml, assimp, libpng, OpenEXRCore and cairo. Compiles as C89 to C17 and C++98 to C++17.
+ * Needs libyaml, assimp, libpng, libdeflate, OpenEXRCore and cairo. Compiles as C89 to C17 and C++98 to C++17.
  * All messages are kept in the context, as gnomon.h says: "FILE:LINE: key: what is wrong".
  */
 #ifndef GNOMON_GNOMON_IO_H

@@ -1,15 +1,29 @@
-/* picture_png.c -- PNG, 8 or 16 bit sRGB, one row encoded at a time.
+/* picture_png.c -- PNG, 8 or 16 bit sRGB.
  *
- * Place: encoder under picture.c; srgb.c has the curve. libpng reports errors by longjmp, so one function holds the
- * setjmp and everything that could be lost by it lives in the caller's `encoder`.
+ * Place: encoder under picture.c; srgb.c has the curve. Rows of floats become levels, and these differences from the row above (filter
+ * type Up). A picture of common size has them all in one block, which libdeflate packs and libpng gets as chunks; of a large one libpng
+ * filters and packs row by row. libpng reports errors by longjmp, so one function holds the setjmp and everything that could be lost by
+ * it lives in the caller's `encoder`.
+ * Source: W3C, Portable Network Graphics, 3rd edition, 9.2 (filter types), 10.1 (zlib streams).
  */
 #include "io/picture.h"
 #include "io/srgb.h"
 
+#include <libdeflate.h>
 #include <png.h>
 #include <setjmp.h>
 #include <string.h>
-#include <zlib.h>
+
+/* libdeflate takes a whole block, cannot be told to stop on the way, and takes up to 8 ms for a million bytes: a picture of
+ * 1920 x 1080 x 3 bytes is the largest that it gets. */
+#define PACKED_MOST ((size_t)6 << 20)
+
+/* Bytes of a chunk: in between we can be told to stop. */
+#define CHUNK ((size_t)1 << 20)
+
+/* Ten rendered pictures of 1920 x 1080: 13 to 27 ms, where zlib's level 1 with Z_RLE takes 9 to 56 for 2 to 30 % more bytes. Level 2: 8 to
+ * 41 ms for a few percent less. */
+enum { PACK_LEVEL = 1 };
 
 typedef struct encoder {
     const gnoi_picture *picture;
@@ -17,8 +31,14 @@ typedef struct encoder {
     png_structp png;
     png_infop info;
     gnoi_srgb srgb;
-    png_byte *row;
-    size_t row_size;
+    size_t row_size;       /* bytes of a row's levels */
+    png_byte *levels;      /* two rows: the one being made and the one above it, zeros above the first */
+    png_byte *row, *above; /* these two */
+    png_byte *filtered;    /* every row, its filter type in front; NULL: libpng gets the rows */
+    size_t filtered_size;
+    struct libdeflate_compressor *compressor;
+    png_byte *packed; /* zlib stream of what was filtered */
+    size_t packed_room;
     char message[200];
 } encoder;
 
@@ -93,32 +113,127 @@ static void encode_row(encoder *e, const float *source)
     }
 }
 
-/* Returns 0 when libpng gave up. */
+static void filter_up(png_byte *restrict out, const png_byte *restrict row, const png_byte *restrict above, size_t size)
+{
+    out[0] = PNG_FILTER_VALUE_UP;
+    for (size_t i = 0; i < size; i++) {
+        out[1 + i] = (png_byte)(row[i] - above[i]);
+    }
+}
+
+static void set_head(encoder *e)
+{
+    png_set_user_limits(e->png, GNO_MAX_IMAGE_SIDE, GNO_MAX_IMAGE_SIDE);
+    png_set_IHDR(e->png, e->info, (png_uint_32)e->picture->width, (png_uint_32)e->picture->height, e->picture->depth, PNG_COLOR_TYPE_RGB,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(e->png, e->info, PNG_sRGB_INTENT_RELATIVE);
+    /* For rows that libpng packs. Measured on rendered pictures: four times as fast as its defaults, for a third more bytes. */
+    png_set_filter(e->png, PNG_FILTER_TYPE_DEFAULT, PNG_FILTER_UP);
+    png_set_compression_level(e->png, 1);
+    png_set_compression_strategy(e->png, 3); /* zlib's Z_RLE: of differences from row to row only runs repeat */
+    png_set_compression_buffer_size(e->png, 65536);
+}
+
+static void put_row(encoder *e, int y)
+{
+    if (e->filtered == NULL) {
+        png_write_row(e->png, e->row);
+        return;
+    }
+    filter_up(e->filtered + (size_t)y * (e->row_size + 1), e->row, e->above, e->row_size);
+    png_byte *const done = e->row;
+    e->row = e->above;
+    e->above = done;
+}
+
+/* Returns 0 when told to stop. */
+static int put_packed(encoder *e)
+{
+    const size_t size = libdeflate_zlib_compress(e->compressor, e->filtered, e->filtered_size, e->packed, e->packed_room);
+    if (size == 0) {
+        png_error(e->png, "the rows do not fit into the bound of their packed size");
+    }
+    for (size_t at = 0; at < size; at += CHUNK) {
+        if (!gnoi_file_go_on(e->file, 1)) {
+            return 0;
+        }
+        png_write_chunk(e->png, (png_const_bytep)"IDAT", e->packed + at, size - at < CHUNK ? size - at : CHUNK);
+    }
+    png_write_chunk(e->png, (png_const_bytep)"IEND", NULL, 0); /* png_write_end wants rows that it packed itself */
+    return 1;
+}
+
+/* Returns 0 when libpng gave up or when told to stop. */
 static int encode(encoder *e)
 {
     if (setjmp(png_jmpbuf(e->png)) != 0) {
         return 0;
     }
     png_set_write_fn(e->png, e, on_write, on_flush);
-    png_set_user_limits(e->png, GNO_MAX_IMAGE_SIDE, GNO_MAX_IMAGE_SIDE);
-    png_set_IHDR(e->png, e->info, (png_uint_32)e->picture->width, (png_uint_32)e->picture->height, e->picture->depth, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-    png_set_sRGB(e->png, e->info, PNG_sRGB_INTENT_RELATIVE);
-    /* Measured on rendered pictures: four times as fast as libpng's defaults, for a third more bytes. */
-    png_set_filter(e->png, PNG_FILTER_TYPE_DEFAULT, PNG_FILTER_UP);
-    png_set_compression_level(e->png, 1);
-    png_set_compression_strategy(e->png, 3); /* zlib's Z_RLE: of differences from row to row only runs repeat */
-    png_set_compression_buffer_size(e->png, 65536);
+    set_head(e);
     png_write_info(e->png, e->info);
     for (int y = 0; y < e->picture->height; y++) {
         if (!gnoi_file_go_on(e->file, (double)y / e->picture->height)) {
             return 0;
         }
         encode_row(e, gnoi_picture_row(e->picture, y));
-        png_write_row(e->png, e->row);
+        put_row(e, y);
+    }
+    if (e->filtered != NULL) {
+        return put_packed(e);
     }
     png_write_end(e->png, NULL);
     return 1;
+}
+
+/* Returns 0 when memory fails. */
+static int prepare_packing(encoder *e)
+{
+    e->compressor = libdeflate_alloc_compressor(PACK_LEVEL);
+    if (e->compressor == NULL) {
+        return 0;
+    }
+    e->filtered_size = (size_t)e->picture->height * (e->row_size + 1);
+    e->filtered = gno_context_realloc(e->file->context, NULL, 0, e->filtered_size);
+    e->packed_room = libdeflate_zlib_compress_bound(e->compressor, e->filtered_size);
+    e->packed = gno_context_realloc(e->file->context, NULL, 0, e->packed_room);
+    return e->filtered != NULL && e->packed != NULL;
+}
+
+/* Returns 0 when memory fails; release_all gives back what was got till then. */
+static int prepare(encoder *e)
+{
+    e->row_size = (size_t)e->picture->width * 3 * (size_t)(e->picture->depth / 8);
+    e->levels = gno_context_realloc(e->file->context, NULL, 0, 2 * e->row_size);
+    e->png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, e, on_error, on_warning, e, allocate, release);
+    e->info = e->png != NULL ? png_create_info_struct(e->png) : NULL;
+    if (e->levels == NULL || e->info == NULL || !gnoi_srgb_create(e->file->context, e->picture->depth, &e->srgb)) {
+        return 0;
+    }
+    e->row = e->levels;
+    e->above = e->levels + e->row_size;
+    memset(e->above, 0, e->row_size);
+    return (size_t)e->picture->height > PACKED_MOST / (e->row_size + 1) || prepare_packing(e);
+}
+
+static void release_block(gno_context *context, void *block, size_t size)
+{
+    if (block != NULL) {
+        gno_context_realloc(context, block, size, 0);
+    }
+}
+
+static void release_all(encoder *e)
+{
+    gno_context *context = e->file->context;
+    gnoi_srgb_destroy(&e->srgb);
+    if (e->png != NULL) {
+        png_destroy_write_struct(&e->png, &e->info);
+    }
+    release_block(context, e->packed, e->packed_room);
+    release_block(context, e->filtered, e->filtered_size);
+    release_block(context, e->levels, 2 * e->row_size);
+    libdeflate_free_compressor(e->compressor);
 }
 
 gno_status gnoi_picture_png(const gnoi_picture *picture, gnoi_file *file)
@@ -127,12 +242,8 @@ gno_status gnoi_picture_png(const gnoi_picture *picture, gnoi_file *file)
     memset(&e, 0, sizeof e);
     e.picture = picture;
     e.file = file;
-    e.row_size = (size_t)picture->width * 3 * (size_t)(picture->depth / 8);
-    e.row = gno_context_realloc(file->context, NULL, 0, e.row_size);
-    e.png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, &e, on_error, on_warning, &e, allocate, release);
-    e.info = e.png != NULL ? png_create_info_struct(e.png) : NULL;
     gno_status status = GNO_OK;
-    if (e.row == NULL || e.info == NULL || !gnoi_srgb_create(file->context, picture->depth, &e.srgb)) {
+    if (!prepare(&e)) {
         status = gno_context_fail(file->context, GNO_ERROR_MEMORY, "out of memory for writing a PNG picture");
     } else if (!encode(&e) && file->error == 0) {
         char text[256];
@@ -140,12 +251,6 @@ gno_status gnoi_picture_png(const gnoi_picture *picture, gnoi_file *file)
         strncat(text, e.message, sizeof text - 6);
         status = gno_context_fail(file->context, strstr(e.message, "memory") != NULL ? GNO_ERROR_MEMORY : GNO_ERROR_FILE, text);
     }
-    gnoi_srgb_destroy(&e.srgb);
-    if (e.png != NULL) {
-        png_destroy_write_struct(&e.png, &e.info);
-    }
-    if (e.row != NULL) {
-        gno_context_realloc(file->context, e.row, e.row_size, 0);
-    }
+    release_all(&e);
     return status;
 }

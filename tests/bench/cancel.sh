@@ -11,7 +11,7 @@ trap 'rm -rf "$work"' EXIT
 pkg() { pkg-config "$@" 2>/dev/null || true; }
 # shellcheck disable=SC2046
 ${CC:-cc} -std=c11 -O2 -pthread -D_POSIX_C_SOURCE=200809L -Iinclude tests/bench/cancel.c "$build/libgnomon-io.a" "$build/libgnomon.a" \
-    $(pkg --libs yaml-0.1 assimp libpng cairo-pdf) -lOpenEXRCore -lm -o "$work/cancel"
+    $(pkg --libs yaml-0.1 assimp libpng libdeflate cairo-pdf) -lOpenEXRCore -lm -o "$work/cancel"
 if [ $# -eq 0 ]; then
     [ -f "$data/reference/dragon.obj.xz" ] || { echo "cancel.sh: no $data/reference/dragon.obj.xz" >&2; exit 1; }
     xz -dc "$data/reference/dragon.obj.xz" >"$work/dragon.obj"

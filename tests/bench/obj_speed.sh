@@ -13,7 +13,7 @@ trap 'rm -rf "$work"' EXIT
 pkg() { pkg-config "$@" 2>/dev/null || true; }
 # shellcheck disable=SC2046
 ${CC:-cc} -std=c11 -O2 -pthread -D_POSIX_C_SOURCE=200809L -Iinclude -Isrc tests/bench/obj_speed.c \
-    "$build/libgnomon-io.a" "$build/libgnomon.a" $(pkg --libs yaml-0.1 assimp libpng) -lOpenEXRCore -lm -o "$work/obj_speed"
+    "$build/libgnomon-io.a" "$build/libgnomon.a" $(pkg --libs yaml-0.1 assimp libpng libdeflate) -lOpenEXRCore -lm -o "$work/obj_speed"
 if [ $# -eq 0 ]; then
     if [ -f "$data/reference/dragon.obj.xz" ]; then
         xz -dc "$data/reference/dragon.obj.xz" >"$work/dragon.obj"

@@ -6,7 +6,7 @@ build=${BUILD:-build}
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 [ -f "$build/libgnomon-io.a" ] || { echo "SKIP pieces: $build/libgnomon-io.a is missing: run make first"; exit 0; }
-libs=$(pkg-config --libs yaml-0.1 assimp libpng cairo)
+libs=$(pkg-config --libs yaml-0.1 assimp libpng libdeflate cairo)
 ${CC:-cc} -std=c11 -O2 -D_POSIX_C_SOURCE=200809L tests/bench/town.c -o "$work/town" -lm
 # shellcheck disable=SC2086
 ${CC:-cc} -std=c11 -O2 -D_POSIX_C_SOURCE=200809L -Iinclude tests/bench/pieces.c "$build/libgnomon-io.a" "$build/libgnomon.a" \

@@ -20,7 +20,7 @@ verdict() { # name, then a command
     fi
 }
 
-io_libs=$(pkg-config --libs yaml-0.1 assimp libpng 2>/dev/null || echo -lyaml -lassimp -lpng)
+io_libs=$(pkg-config --libs yaml-0.1 assimp libpng libdeflate 2>/dev/null || echo -lyaml -lassimp -lpng -ldeflate)
 strict='-pedantic-errors -Wall -Wextra -Werror'
 
 c89() { # name, libraries

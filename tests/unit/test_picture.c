@@ -34,6 +34,54 @@ static void test_png(void **state)
     check_png(GNO_DEPTH_16, 16, 2, 300);
 }
 
+/* Levels of noise, which does not pack, by the linear values that stand for them. */
+static void check_png_of_noise(int depth, int width, int height)
+{
+    const int top = depth == 8 ? 255 : 65535;
+    const size_t values = (size_t)width * (size_t)height * 3;
+    float *rgb = malloc(values * sizeof *rgb), *linear = malloc(((size_t)top + 1) * sizeof *linear);
+    unsigned *want = malloc(values * sizeof *want);
+    assert_true(rgb != NULL && linear != NULL && want != NULL);
+    for (int level = 0; level <= top; level++) {
+        linear[level] = (float)linear_of((double)level / top);
+    }
+    uint32_t seed = (uint32_t)(width * 31 + height);
+    for (size_t i = 0; i < values; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        want[i] = seed >> (depth == 8 ? 24 : 16);
+        rgb[i] = linear[want[i]];
+    }
+    gno_context *context = new_context();
+    assert_int_equal(write_picture(context, in_folder("a.png"), (gno_pixel_depth)depth, width, height, rgb), GNO_OK);
+    unsigned *levels = read_png(in_folder("a.png"), depth, width, height);
+    for (size_t i = 0; i < values; i++) {
+        if (levels[i] != want[i]) {
+            fail_msg("%d x %d, %d bits: value %zu is %u, not %u", width, height, depth, i, levels[i], want[i]);
+        }
+    }
+    free(levels);
+    free(want);
+    free(linear);
+    free(rgb);
+    gno_context_destroy(context);
+}
+
+/* Up to 6 MiB the picture is packed in one piece and cut into chunks; 1999 x 1049 is the first height over that. */
+static void test_png_of_noise(void **state)
+{
+    (void)state;
+    const int depths[] = {8, 16};
+    for (int i = 0; i < 2; i++) {
+        check_png_of_noise(depths[i], 1, 1);
+        check_png_of_noise(depths[i], 1, 77);
+        check_png_of_noise(depths[i], 301, 1);
+        check_png_of_noise(depths[i], 317, 211);
+    }
+    check_png_of_noise(8, 1999, 1048);
+    check_png_of_noise(8, 1999, 1049);
+    check_png_of_noise(16, 1001, 1051);
+}
+
 /* Nearest half of a finite value in half's range: 11 significant bits, no fewer than 2^-24 a step. */
 static double half_of(double value)
 {
@@ -258,6 +306,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test_setup(test_png, empty_folder),
+        cmocka_unit_test_setup(test_png_of_noise, empty_folder),
         cmocka_unit_test_setup(test_exr, empty_folder),
         cmocka_unit_test_setup(test_exr_values_beyond_half, empty_folder),
         cmocka_unit_test_setup(test_pfm, empty_folder),

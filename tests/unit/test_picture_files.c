@@ -13,7 +13,25 @@
 
 /* ---- whole or not at all --------------------------------------------------------------------------------------------- */
 
-static const char *const every_format[] = {"a.png", "a.exr", "a.pfm"};
+/* The way through the writers differs by format and, for PNG, by size. */
+enum { WAYS = 4, LARGE = 1500 };
+static const char *const every_way[WAYS] = {"a.png", "a.exr", "a.pfm", "large.png"};
+
+static int side_of(int way, int usual)
+{
+    return way == 3 ? LARGE : usual;
+}
+
+static float *noise(int width, int height)
+{
+    float *rgb = gradient(width, height);
+    uint32_t seed = 1;
+    for (size_t i = 0; i < (size_t)width * (size_t)height * 3; i++) {
+        seed = seed * 1664525u + 1013904223u;
+        rgb[i] = (float)(seed / 4294967296.0);
+    }
+    return rgb;
+}
 
 static void put_text(const char *path, const char *text)
 {
@@ -38,17 +56,17 @@ static void test_unwritable(void **state)
     (void)state;
     const float rgb[3] = {0};
     gno_context *context = new_context();
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < WAYS; i++) {
         char path[64];
-        snprintf(path, sizeof path, "nowhere/%s", every_format[i]);
+        snprintf(path, sizeof path, "nowhere/%s", every_way[i]);
         assert_int_equal(write_picture(context, in_folder(path), GNO_DEPTH_DEFAULT, 1, 1, rgb), GNO_ERROR_FILE);
         expect_message(context, path);
         expect_message(context, "No such file");
-        assert_int_equal(mkdir(in_folder(every_format[i]), 0777), 0);
-        assert_int_equal(write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, 1, 1, rgb), GNO_ERROR_FILE);
+        assert_int_equal(mkdir(in_folder(every_way[i]), 0777), 0);
+        assert_int_equal(write_picture(context, in_folder(every_way[i]), GNO_DEPTH_DEFAULT, 1, 1, rgb), GNO_ERROR_FILE);
         expect_message(context, "directory");
     }
-    assert_int_equal(files_in_folder(), 3);
+    assert_int_equal(files_in_folder(), WAYS);
     gno_context_destroy(context);
 }
 
@@ -56,29 +74,24 @@ static void test_unwritable(void **state)
 static void test_failure_keeps_the_old_file(void **state)
 {
     (void)state;
-    const int side = 300;
     gno_context *context = new_context();
-    float *rgb = gradient(side, side);
-    uint32_t seed = 1;
-    for (size_t i = 0; i < (size_t)side * (size_t)side * 3; i++) {
-        seed = seed * 1664525u + 1013904223u; /* noise cannot be compressed below the limit */
-        rgb[i] = (float)(seed / 4294967296.0);
-    }
+    float *rgb = noise(LARGE, LARGE); /* cannot be compressed below the limit */
     const size_t held = gno_context_memory(context, NULL);
     struct rlimit old, low;
     assert_int_equal(getrlimit(RLIMIT_FSIZE, &old), 0);
     low = old;
     low.rlim_cur = 20000;
     signal(SIGXFSZ, SIG_IGN);
-    for (int i = 0; i < 3; i++) {
-        put_text(in_folder(every_format[i]), "old picture");
+    for (int i = 0; i < WAYS; i++) {
+        const int side = side_of(i, 300);
+        put_text(in_folder(every_way[i]), "old picture");
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
-        const gno_status status = write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, side, side, rgb);
+        const gno_status status = write_picture(context, in_folder(every_way[i]), GNO_DEPTH_DEFAULT, side, side, rgb);
         assert_int_equal(setrlimit(RLIMIT_FSIZE, &old), 0);
         assert_int_equal(status, GNO_ERROR_FILE);
-        expect_message(context, every_format[i]);
+        expect_message(context, every_way[i]);
         expect_message(context, "too large");
-        expect_text(in_folder(every_format[i]), "old picture");
+        expect_text(in_folder(every_way[i]), "old picture");
         assert_int_equal(files_in_folder(), i + 1);
         assert_int_equal(gno_context_memory(context, NULL), held);
     }
@@ -114,13 +127,38 @@ static void test_full_device(void **state)
         skip();
     }
     gno_context *context = new_context();
-    float *rgb = gradient(200, 200);
-    for (int i = 0; i < 3; i++) {
-        assert_int_equal(symlink("/dev/full", in_folder(every_format[i])), 0);
-        assert_int_equal(write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, 200, 200, rgb), GNO_ERROR_FILE);
+    float *rgb = gradient(LARGE, LARGE);
+    for (int i = 0; i < WAYS; i++) {
+        assert_int_equal(symlink("/dev/full", in_folder(every_way[i])), 0);
+        assert_int_equal(write_picture(context, in_folder(every_way[i]), GNO_DEPTH_DEFAULT, side_of(i, 200), side_of(i, 200), rgb), GNO_ERROR_FILE);
         expect_message(context, "No space");
     }
-    assert_int_equal(files_in_folder(), 3);
+    assert_int_equal(files_in_folder(), WAYS);
+    free(rgb);
+    gno_context_destroy(context);
+}
+
+static int stop_at_the_end(void *user, const char *stage, double fraction)
+{
+    (void)user;
+    (void)stage;
+    return fraction >= 1;
+}
+
+/* All rows are packed, and nothing but chunks is left to write. */
+static void test_stop_between_chunks(void **state)
+{
+    (void)state;
+    const int width = 1999, height = 1048;
+    float *rgb = noise(width, height);
+    gno_context_def def = gno_context_def_default();
+    gno_context *context = NULL;
+    def.progress = stop_at_the_end;
+    assert_int_equal(gno_context_create(&def, &context), GNO_OK);
+    const size_t held = gno_context_memory(context, NULL);
+    assert_int_equal(write_picture(context, in_folder("a.png"), GNO_DEPTH_DEFAULT, width, height, rgb), GNO_ERROR_CANCELLED);
+    assert_int_equal(files_in_folder(), 0);
+    assert_int_equal(gno_context_memory(context, NULL), held);
     free(rgb);
     gno_context_destroy(context);
 }
@@ -145,7 +183,7 @@ static void *counted(void *user, void *block, size_t old_size, size_t new_size)
 static void test_every_allocation_fails_once(void **state)
 {
     (void)state;
-    float *rgb = gradient(40, 40);
+    float *rgb = gradient(LARGE, LARGE);
     counter count = {1000000};
     gno_context_def def = gno_context_def_default();
     def.alloc = counted;
@@ -153,12 +191,12 @@ static void test_every_allocation_fails_once(void **state)
     gno_context *context = NULL;
     assert_int_equal(gno_context_create(&def, &context), GNO_OK);
     const size_t held = gno_context_memory(context, NULL);
-    for (int i = 0; i < 3; i++) {
+    for (int i = 0; i < WAYS; i++) {
         gno_status status = GNO_ERROR_MEMORY;
         for (int allowed = 0; status != GNO_OK; allowed++) {
             assert_true(allowed < 100);
             count.left = allowed;
-            status = write_picture(context, in_folder(every_format[i]), GNO_DEPTH_DEFAULT, 40, 40, rgb);
+            status = write_picture(context, in_folder(every_way[i]), GNO_DEPTH_DEFAULT, side_of(i, 40), side_of(i, 40), rgb);
             assert_true(status == GNO_OK || status == GNO_ERROR_MEMORY);
             assert_int_equal(files_in_folder(), status == GNO_OK ? i + 1 : i);
             assert_int_equal(gno_context_memory(context, NULL), held);
@@ -175,6 +213,7 @@ int main(void)
         cmocka_unit_test_setup(test_failure_keeps_the_old_file, empty_folder),
         cmocka_unit_test_setup(test_success_replaces_the_old_file, empty_folder),
         cmocka_unit_test_setup(test_full_device, empty_folder),
+        cmocka_unit_test_setup(test_stop_between_chunks, empty_folder),
         cmocka_unit_test_setup(test_every_allocation_fails_once, empty_folder),
     };
     if (mkdtemp(folder) == NULL) {
