@@ -6,6 +6,7 @@
  * it lives in the caller's `encoder`.
  * Source: W3C, Portable Network Graphics, 3rd edition, 9.2 (filter types), 10.1 (zlib streams).
  */
+#include "base/fetch.h"
 #include "io/picture.h"
 #include "io/srgb.h"
 
@@ -21,9 +22,10 @@
 /* Bytes of a chunk: in between we can be told to stop. */
 #define CHUNK ((size_t)1 << 20)
 
-/* Ten rendered pictures of 1920 x 1080: 13 to 27 ms, where zlib's level 1 with Z_RLE takes 9 to 56 for 2 to 30 % more bytes. Level 2: 8 to
- * 41 ms for a few percent less. */
-enum { PACK_LEVEL = 1 };
+/* libdeflate's level. Of 17 rendered pictures of 1920 x 1080 those where one byte in eight or fewer differs from the row above pack faster at 2
+ * (8 to 15 ms instead of 13 to 15), the others at 1 (14 to 27 ms instead of 14 to 41). zlib at level 1 with Z_RLE takes 9 to 56 ms for more
+ * bytes. */
+enum { LEVEL_FLAT = 2, LEVEL_DETAILED = 1 };
 
 typedef struct encoder {
     const gnoi_picture *picture;
@@ -35,7 +37,7 @@ typedef struct encoder {
     png_byte *levels;      /* two rows: the one being made and the one above it, zeros above the first */
     png_byte *row, *above; /* these two */
     png_byte *filtered;    /* every row, its filter type in front; NULL: libpng gets the rows */
-    size_t filtered_size;
+    size_t filtered_size, zeros; /* how many of these bytes are zero */
     struct libdeflate_compressor *compressor;
     png_byte *packed; /* zlib stream of what was filtered */
     size_t packed_room;
@@ -95,30 +97,39 @@ static void on_flush(png_structp png)
     (void)png;
 }
 
-static void encode_row(encoder *e, const float *source)
+/* The row below is asked for on the way: to this loop alone memory is too slow. */
+static void encode_row(encoder *e, int y)
 {
     const size_t values = (size_t)e->picture->width * 3;
     const double exposure = e->picture->exposure;
+    const gnoi_srgb srgb = e->srgb; /* here no byte that is written can be a part of it */
+    const float *source = gnoi_picture_row(e->picture, y), *below = gnoi_picture_row(e->picture, y + 1 < e->picture->height ? y + 1 : y);
     png_byte *out = e->row;
     if (e->picture->depth == 8) {
         for (size_t i = 0; i < values; i++) {
-            out[i] = (png_byte)gnoi_srgb_level(&e->srgb, source[i] * exposure);
+            FETCH(below + i);
+            out[i] = (png_byte)gnoi_srgb_level(&srgb, source[i] * exposure);
         }
         return;
     }
     for (size_t i = 0; i < values; i++) {
-        const unsigned level = gnoi_srgb_level(&e->srgb, source[i] * exposure);
+        const unsigned level = gnoi_srgb_level(&srgb, source[i] * exposure);
+        FETCH(below + i);
         out[2 * i] = (png_byte)(level >> 8);
         out[2 * i + 1] = (png_byte)(level & 255);
     }
 }
 
-static void filter_up(png_byte *restrict out, const png_byte *restrict row, const png_byte *restrict above, size_t size)
+/* Returns how many differences are zero. */
+static unsigned filter_up(png_byte *restrict out, const png_byte *restrict row, const png_byte *restrict above, size_t size)
 {
+    unsigned zeros = 0;
     out[0] = PNG_FILTER_VALUE_UP;
     for (size_t i = 0; i < size; i++) {
         out[1 + i] = (png_byte)(row[i] - above[i]);
+        zeros += row[i] == above[i];
     }
+    return zeros;
 }
 
 static void set_head(encoder *e)
@@ -140,7 +151,7 @@ static void put_row(encoder *e, int y)
         png_write_row(e->png, e->row);
         return;
     }
-    filter_up(e->filtered + (size_t)y * (e->row_size + 1), e->row, e->above, e->row_size);
+    e->zeros += filter_up(e->filtered + (size_t)y * (e->row_size + 1), e->row, e->above, e->row_size);
     png_byte *const done = e->row;
     e->row = e->above;
     e->above = done;
@@ -149,6 +160,10 @@ static void put_row(encoder *e, int y)
 /* Returns 0 when told to stop. */
 static int put_packed(encoder *e)
 {
+    e->compressor = libdeflate_alloc_compressor(e->zeros > e->filtered_size / 8 * 7 ? LEVEL_FLAT : LEVEL_DETAILED);
+    if (e->compressor == NULL) {
+        png_error(e->png, "out of memory");
+    }
     const size_t size = libdeflate_zlib_compress(e->compressor, e->filtered, e->filtered_size, e->packed, e->packed_room);
     if (size == 0) {
         png_error(e->png, "the rows do not fit into the bound of their packed size");
@@ -176,7 +191,7 @@ static int encode(encoder *e)
         if (!gnoi_file_go_on(e->file, (double)y / e->picture->height)) {
             return 0;
         }
-        encode_row(e, gnoi_picture_row(e->picture, y));
+        encode_row(e, y);
         put_row(e, y);
     }
     if (e->filtered != NULL) {
@@ -189,13 +204,9 @@ static int encode(encoder *e)
 /* Returns 0 when memory fails. */
 static int prepare_packing(encoder *e)
 {
-    e->compressor = libdeflate_alloc_compressor(PACK_LEVEL);
-    if (e->compressor == NULL) {
-        return 0;
-    }
     e->filtered_size = (size_t)e->picture->height * (e->row_size + 1);
     e->filtered = gno_context_realloc(e->file->context, NULL, 0, e->filtered_size);
-    e->packed_room = libdeflate_zlib_compress_bound(e->compressor, e->filtered_size);
+    e->packed_room = libdeflate_zlib_compress_bound(NULL, e->filtered_size); /* at any level */
     e->packed = gno_context_realloc(e->file->context, NULL, 0, e->packed_room);
     return e->filtered != NULL && e->packed != NULL;
 }
@@ -243,13 +254,16 @@ gno_status gnoi_picture_png(const gnoi_picture *picture, gnoi_file *file)
     e.picture = picture;
     e.file = file;
     gno_status status = GNO_OK;
-    if (!prepare(&e)) {
-        status = gno_context_fail(file->context, GNO_ERROR_MEMORY, "out of memory for writing a PNG picture");
-    } else if (!encode(&e) && file->error == 0) {
+    int has_memory = prepare(&e);
+    if (has_memory && !encode(&e) && file->error == 0) {
         char text[256];
         memcpy(text, "PNG: ", 6);
         strncat(text, e.message, sizeof text - 6);
-        status = gno_context_fail(file->context, strstr(e.message, "memory") != NULL ? GNO_ERROR_MEMORY : GNO_ERROR_FILE, text);
+        has_memory = strstr(e.message, "memory") == NULL;
+        status = gno_context_fail(file->context, GNO_ERROR_FILE, text);
+    }
+    if (!has_memory) {
+        status = gno_context_fail(file->context, GNO_ERROR_MEMORY, "out of memory for writing a PNG picture");
     }
     release_all(&e);
     return status;

@@ -34,8 +34,8 @@ static void test_png(void **state)
     check_png(GNO_DEPTH_16, 16, 2, 300);
 }
 
-/* Levels of noise, which does not pack, by the linear values that stand for them. */
-static void check_png_of_noise(int depth, int width, int height)
+/* Levels of noise, which does not pack, by the linear values that stand for them. All rows from the last of `rows` on are the same. */
+static void check_png_of_noise(int depth, int width, int height, int rows)
 {
     const int top = depth == 8 ? 255 : 65535;
     const size_t values = (size_t)width * (size_t)height * 3;
@@ -48,7 +48,7 @@ static void check_png_of_noise(int depth, int width, int height)
     uint32_t seed = (uint32_t)(width * 31 + height);
     for (size_t i = 0; i < values; i++) {
         seed = seed * 1664525u + 1013904223u;
-        want[i] = seed >> (depth == 8 ? 24 : 16);
+        want[i] = i < (size_t)rows * (size_t)width * 3 ? seed >> (depth == 8 ? 24 : 16) : want[i - (size_t)width * 3];
         rgb[i] = linear[want[i]];
     }
     gno_context *context = new_context();
@@ -72,14 +72,15 @@ static void test_png_of_noise(void **state)
     (void)state;
     const int depths[] = {8, 16};
     for (int i = 0; i < 2; i++) {
-        check_png_of_noise(depths[i], 1, 1);
-        check_png_of_noise(depths[i], 1, 77);
-        check_png_of_noise(depths[i], 301, 1);
-        check_png_of_noise(depths[i], 317, 211);
+        check_png_of_noise(depths[i], 1, 1, 1);
+        check_png_of_noise(depths[i], 1, 77, 77);
+        check_png_of_noise(depths[i], 301, 1, 1);
+        check_png_of_noise(depths[i], 317, 211, 211);
+        check_png_of_noise(depths[i], 317, 211, 5);
     }
-    check_png_of_noise(8, 1999, 1048);
-    check_png_of_noise(8, 1999, 1049);
-    check_png_of_noise(16, 1001, 1051);
+    check_png_of_noise(8, 1999, 1048, 1048);
+    check_png_of_noise(8, 1999, 1049, 1049);
+    check_png_of_noise(16, 1001, 1051, 1051);
 }
 
 /* Nearest half of a finite value in half's range: 11 significant bits, no fewer than 2^-24 a step. */
