@@ -31,26 +31,37 @@ static int wrapped(int i, int n, gno_wrap wrap)
     return wrap == GNO_WRAP_MIRROR && copy % 2 != 0 ? n - 1 - i : i;
 }
 
-/* Solid bytes, their columns within the picture, their rows too or in the next repetition: `count` rows, each with as many cells for
- * every lane, for counts that change from lane to lane cost more than what they spare. */
-static void add_bytes(const gnoi_look *look, const gnoi_filter_lane_row *rows, int count, int column, int row, int lane, float sum[4])
+/* Solid bytes: `columns` of each of `count` rows that are `width` texels apart. Every lane has as many, for counts that change from lane to
+ * lane cost more than what they spare. */
+static inline void add_block(const unsigned char (*texel)[4], size_t width, const float *decode, const gnoi_filter_lane_row *rows, int count,
+                             int columns, int lane, float sum[4])
 {
-    const gnoi_image *image = look->image;
-    const float *decode = image->decode;
     float red = sum[0], green = sum[1], blue = sum[2];
-    row += row < 0 ? image->height : 0;
-    for (int r = 0; r < count; r++, row = row + 1 == image->height ? 0 : row + 1) {
-        unsigned char(*v)[4] = image->bytes + (size_t)row * (size_t)image->width + (size_t)(column + (int)rows[r].first[lane]);
-        for (int c = 0; c < rows[r].most; c++) {
-            float area = rows[r].area[c][lane];
-            red += area * decode[v[c][0]];
-            green += area * decode[v[c][1]];
-            blue += area * decode[v[c][2]];
+    for (int r = 0; r < count; r++, texel += width) {
+        const float *area = &rows[r].area[0][lane];
+        for (int c = 0; c < columns; c++) {
+            red += area[c * GNOI_FILTER_LANES] * decode[texel[c][0]];
+            green += area[c * GNOI_FILTER_LANES] * decode[texel[c][1]];
+            blue += area[c * GNOI_FILTER_LANES] * decode[texel[c][2]];
         }
     }
     sum[0] = red;
     sum[1] = green;
     sum[2] = blue;
+}
+
+/* The columns are within the picture, the rows too or in the next repetition. */
+static void add_bytes(const gnoi_image *image, const gnoi_filter_lane_row *rows, int count, int columns, int column, int row, int lane, float sum[4])
+{
+    const unsigned char(*texel)[4] = (const unsigned char(*)[4])image->bytes + column;
+    size_t width = (size_t)image->width;
+    if (columns <= GNOI_LANE_FEW_COLUMNS && row >= 0 && row + count <= image->height) {
+        add_block(texel + (size_t)row * width + (int)rows[0].first[lane], width, image->decode, rows, count, columns, lane, sum);
+        return;
+    }
+    row += row < 0 ? image->height : 0;
+    for (int r = 0; r < count; r++, row = row + 1 == image->height ? 0 : row + 1)
+        add_block(texel + (size_t)row * width + (int)rows[r].first[lane], width, image->decode, &rows[r], 1, rows[r].most, lane, sum);
 }
 
 static void add_values(const gnoi_look *look, int l, int column, int row, const gnoi_filter_lane_row *cells, int lane, float sum[4])
@@ -141,7 +152,7 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
             int m = lanes.rows[i] - r0 < n ? lanes.rows[i] - r0 : n, level = level_of(looks, which[i]);
             if (level == 0 && l->image->is_solid && rows_follow(l, first, m) && column + (int)lanes.low_x[i] - 1 >= 0 &&
                 column + (int)lanes.high_x[i] + 1 + most <= l->image->width) {
-                add_bytes(l, cells, m, column, first, i, sum[i]);
+                add_bytes(l->image, cells, m, lanes.most, column, first, i, sum[i]);
                 continue;
             }
             for (int r = 0; r < m; r++)

@@ -7,7 +7,6 @@
 #define LEVEL_EDGE 1e-12f /* edges of less height leave no area */
 #define LEAST_WIDTH 1e-20f
 #define FAR 1e10f
-#define FEW_COLUMNS 8
 
 INLINE float within(float v, float low, float high) { return gnoi_lesser(gnoi_greater(v, low), high); }
 
@@ -80,7 +79,7 @@ INLINE int set_columns(const float *restrict low, const float *restrict high, fl
 /* The row's own columns where that spares some, those of all rows where the search costs more. */
 INLINE void choose_columns(const gnoi_filter_lanes *restrict l, const stretches *restrict s, gnoi_filter_lane_row *restrict out)
 {
-    if (l->most > FEW_COLUMNS) {
+    if (l->most > GNOI_LANE_FEW_COLUMNS) {
         out->most = set_columns(s->low, s->high, out->first, out->columns);
         return;
     }

@@ -12,6 +12,7 @@
 
 #define GNOI_FILTER_LANES 16
 #define GNOI_LANE_COLUMNS 64
+#define GNOI_LANE_FEW_COLUMNS 8 /* where `most` is no more, all rows of a lane have the same columns */
 #define GNOI_EVEN_BEND 2e-3f /* |wx| + |wy| below which areas are taken as in proportion */
 
 #define GNOI_LANE_ALIGNMENT 64 /* one vector of lanes is one cache line */
