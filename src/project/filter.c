@@ -7,7 +7,6 @@
 
 #define MOST_STEEP 0.2     /* share by which w may change from a pixel's middle to its border, or it is cut */
 #define MANY_CELLS 12000   /* elements that are weighed rather than being cut */
-#define MOST_COLUMNS 60.0  /* of a look */
 #define MOST_ROWS 60.0
 #define MOST_PARTS 64
 #define MOST_THICKENED 64.0 /* length up to which thin looks are thickened; a fraction of an element even then */
@@ -323,12 +322,6 @@ static int is_on_grid(gno_wrap wrap, int first, int count, int elements, int lev
     return (first >= 0 && first + count <= elements >> level) || (repeats && (elements & ((1 << level) - 1)) == 0);
 }
 
-/* Whether a cell whose elements differ so much from its mean may be one of `cells` of a pixel. */
-static int is_even_enough(float spread, int cells)
-{
-    return gnoi_filter_is_small(1.0 / cells, BLOCK_TOLERANCE, spread);
-}
-
 /* 1 when cells of `level` > 0 may stand for their elements: few enough, on one grid, each so small a share of the pixel, or so even, that
  * what its mean does to the part of it that is seen is below the tolerance. */
 static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int level)
@@ -337,6 +330,7 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
     double k = 1.0 / (1 << level), s = k * home(v->s, image->width, wrap), t = k * home(v->t, image->height, wrap);
     double wide = 0.5 * k * (fabs(v->sx) + fabs(v->sy)), high = 0.5 * k * (fabs(v->tx) + fabs(v->ty));
     int i0 = floor_of(s - wide), j0 = floor_of(t - high), columns, rows;
+    double share = 1 / (k * k * turn_of(v)); /* of a cell in the pixel: those under the box around a thin one say nothing */
     size_t middle;
     float spread = 0;
     if (2 * wide + 2 > BLOCK_SIDE || 2 * high + 2 > BLOCK_SIDE)
@@ -346,7 +340,7 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
     if (!is_on_grid(wrap, i0, columns, image->width, level) || !is_on_grid(wrap, j0, rows, image->height, level))
         return 0;
     middle = (size_t)wrapped(j0 + rows / 2, l->height, wrap) * (size_t)l->width + (size_t)wrapped(i0 + columns / 2, l->width, wrap);
-    if (!is_even_enough(l->spread[middle], columns * rows)) /* mostly that is enough of an answer */
+    if (!gnoi_filter_is_small(share, BLOCK_TOLERANCE, l->spread[middle])) /* mostly that is enough of an answer */
         return 0;
     for (int j = 0; j < rows; j++) {
         size_t row = (size_t)wrapped(j0 + j, l->height, wrap) * (size_t)l->width;
@@ -354,7 +348,7 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
             float own = l->spread[row + (size_t)wrapped(i0 + i, l->width, wrap)];
             spread = own > spread ? own : spread;
         }
-        if (!is_even_enough(spread, columns * rows))
+        if (!gnoi_filter_is_small(share, BLOCK_TOLERANCE, spread))
             return 0;
     }
     return 1;
@@ -389,7 +383,7 @@ static int find_parts(const view *v, int level, int *across, int *down)
     ny = ceil(fabs(v->wy) / bend);
     nx = nx < 1 || steep < GNOI_MOST_BEND ? 1 : nx;
     ny = ny < 1 || steep < GNOI_MOST_BEND ? 1 : ny;
-    while (nx * ny <= MOST_PARTS && (k * (fabs(v->sx) / nx + fabs(v->sy) / ny) > MOST_COLUMNS || k * (fabs(v->tx) / nx + fabs(v->ty) / ny) > MOST_ROWS)) {
+    while (nx * ny <= MOST_PARTS && (k * (fabs(v->sx) / nx + fabs(v->sy) / ny) > GNOI_MOST_COLUMNS || k * (fabs(v->tx) / nx + fabs(v->ty) / ny) > MOST_ROWS)) {
         if ((fabs(v->sx) + fabs(v->tx)) * ny > (fabs(v->sy) + fabs(v->ty)) * nx)
             nx++;
         else

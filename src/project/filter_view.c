@@ -47,6 +47,7 @@ VECTOR_CLONES static void find_squares(const gnoi_views *restrict a, int count, 
         double plain = a->period[i] >= 0 ? 1 : 0;
         plain = a->w[i] > 0 ? plain : 0;
         plain = (wide + 1) * (high + 1) <= GNOI_FEW_CELLS ? plain : 0;
+        plain = wide <= GNOI_MOST_COLUMNS ? plain : 0;
         plain = turn > GNOI_LEAST_TURN * length ? plain : 0;
         plain = length > GNOI_LEAST_LENGTH * GNOI_LEAST_LENGTH ? plain : 0;
         plain = bend < 2.1 * GNOI_MOST_BEND ? plain : 0;
