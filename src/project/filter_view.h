@@ -16,7 +16,7 @@
 
 #define GNOI_MOST_BEND 0.03       /* share by which w may change from a look's middle to its border */
 #define GNOI_MOST_COLUMNS 60.0    /* of a look: room for those at its ends is left */
-#define GNOI_FEW_CELLS 100        /* so many elements are weighed without a look at coarser cells */
+#define GNOI_FEW_CELLS 200        /* so many elements are weighed without a look at coarser cells */
 #define GNOI_LEAST_TURN 1e-4      /* of a look's area to the square of its length, in elements: thinner ones drown in rounding */
 #define GNOI_LEAST_LENGTH 1e-8
 #define GNOI_FAR_ELEMENTS 1e9     /* of int's range */
