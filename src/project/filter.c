@@ -332,7 +332,7 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
     int i0 = floor_of(s - wide), j0 = floor_of(t - high), columns, rows;
     double share = 1 / (k * k * turn_of(v)); /* of a cell in the pixel: those under the box around a thin one say nothing */
     size_t middle;
-    float spread = 0;
+    float variance = 0;
     if (2 * wide + 2 > BLOCK_SIDE || 2 * high + 2 > BLOCK_SIDE)
         return 0;
     columns = floor_of(s + wide) - i0 + 1;
@@ -340,15 +340,15 @@ static int is_fine(const gnoi_image *image, gno_wrap wrap, const view *v, int le
     if (!is_on_grid(wrap, i0, columns, image->width, level) || !is_on_grid(wrap, j0, rows, image->height, level))
         return 0;
     middle = (size_t)wrapped(j0 + rows / 2, l->height, wrap) * (size_t)l->width + (size_t)wrapped(i0 + columns / 2, l->width, wrap);
-    if (!gnoi_filter_is_small(share, BLOCK_TOLERANCE, l->spread[middle])) /* mostly that is enough of an answer */
+    if (!gnoi_filter_is_small(share, BLOCK_TOLERANCE, l->variance[middle])) /* mostly that is enough of an answer */
         return 0;
     for (int j = 0; j < rows; j++) {
         size_t row = (size_t)wrapped(j0 + j, l->height, wrap) * (size_t)l->width;
         for (int i = 0; i < columns; i++) {
-            float own = l->spread[row + (size_t)wrapped(i0 + i, l->width, wrap)];
-            spread = own > spread ? own : spread;
+            float own = l->variance[row + (size_t)wrapped(i0 + i, l->width, wrap)];
+            variance = own > variance ? own : variance;
         }
-        if (!gnoi_filter_is_small(share, BLOCK_TOLERANCE, spread))
+        if (!gnoi_filter_is_small(share, BLOCK_TOLERANCE, variance))
             return 0;
     }
     return 1;

@@ -193,9 +193,9 @@ static double stretch_of(const filter *f, const part *a)
     return (most - least) / most;
 }
 
-static int is_enough(const filter *f, const part *a, double area, float spread)
+static int is_enough(const filter *f, const part *a, double area, float variance)
 {
-    return gnoi_filter_is_small(area, TOLERANCE, spread) || (is_whole(a) && gnoi_filter_is_small(area * 3 * stretch_of(f, a), TOLERANCE, spread));
+    return gnoi_filter_is_small(area, TOLERANCE, variance) || (is_whole(a) && gnoi_filter_is_small(area * 3 * stretch_of(f, a), TOLERANCE, variance));
 }
 
 static void value_at(const filter *f, int level, cell s, cell t, float value[4])
@@ -206,12 +206,12 @@ static void value_at(const filter *f, int level, cell s, cell t, float value[4])
         gnoi_image_value(f->image, level, s.index, t.index, value);
 }
 
-static float spread_at(const filter *f, int level, cell s, cell t)
+static float variance_at(const filter *f, int level, cell s, cell t)
 {
     const gnoi_image_level *l = &f->image->level[level < f->top ? level : f->top];
-    if (!l->spread)
+    if (!l->variance)
         return 0;
-    return level > f->top ? l->spread[0] : l->spread[(size_t)t.index * (size_t)l->width + (size_t)s.index];
+    return level > f->top ? l->variance[0] : l->variance[(size_t)t.index * (size_t)l->width + (size_t)s.index];
 }
 
 static void descend(filter *f, int level, cell s, cell t, const part *a)
@@ -221,7 +221,7 @@ static void descend(filter *f, int level, cell s, cell t, const part *a)
     cell across[2], up[2];
     if (a->count < 3)
         return;
-    if (level == 0 || is_enough(f, a, area, spread_at(f, level, s, t))) {
+    if (level == 0 || is_enough(f, a, area, variance_at(f, level, s, t))) {
         float value[4];
         value_at(f, level, s, t, value);
         add(f, value, area);

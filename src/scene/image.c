@@ -18,7 +18,7 @@ void gnoi_image_free(gno_context *context, gnoi_image *image)
         gnoi_image_level *level = &image->level[l];
         size_t cells = (size_t)level->width * (size_t)level->height;
         gnoi_free(context, level->mean, cells, sizeof *level->mean);
-        gnoi_free(context, level->spread, cells, sizeof *level->spread);
+        gnoi_free(context, level->variance, cells, sizeof *level->variance);
         gnoi_free(context, level->height_of, cells, sizeof *level->height_of);
     }
     memset(image, 0, sizeof *image);
@@ -43,7 +43,7 @@ static int allocate(gno_context *context, const gno_pixels *pixels, gnoi_image *
         if (l > 0 || !pixels->bytes)
             good = (level->mean = gnoi_malloc(context, cells, sizeof *level->mean)) != NULL;
         if (l > 0)
-            good = good && (level->spread = gnoi_malloc(context, cells, sizeof *level->spread)) != NULL;
+            good = good && (level->variance = gnoi_malloc(context, cells, sizeof *level->variance)) != NULL;
         if (width == 1 && height == 1)
             break;
     }
@@ -103,37 +103,37 @@ static int side(int elements, int level, int i)
 
 static inline float larger(float a, float b) { return a > b ? a : b; }
 
-/* A cell's mean over its up to four children, weighted by their sizes, and its spread. */
+/* A cell's mean over its up to four children, weighted by their sizes, and its variance. */
 static void make_cell(const gnoi_image *image, int l, int x, int y)
 {
     const gnoi_image_level *level = &image->level[l], *below = &image->level[l - 1];
     size_t at = (size_t)y * (size_t)level->width + (size_t)x;
     int columns = 2 * x + 1 < below->width ? 2 : 1, rows = 2 * y + 1 < below->height ? 2 : 1;
-    float value[4][4], spread[4], weight[4], total = 0, inner = 0, outer[4] = {0, 0, 0, 0};
+    float value[4][4], variance[4], weight[4], total = 0, inner = 0, outer[4] = {0, 0, 0, 0};
     for (int c = 0; c < 4; c++) {
         int i = 2 * x + c % 2, j = 2 * y + c / 2, is_there = c % 2 < columns && c / 2 < rows;
         i = is_there ? i : 2 * x;
         j = is_there ? j : 2 * y;
         gnoi_image_value(image, l - 1, i, j, value[c]);
-        spread[c] = below->spread ? below->spread[(size_t)j * (size_t)below->width + (size_t)i] : 0;
+        variance[c] = below->variance ? below->variance[(size_t)j * (size_t)below->width + (size_t)i] : 0;
         weight[c] = is_there ? (float)side(image->width, l - 1, i) * (float)side(image->height, l - 1, j) : 0;
         total += weight[c];
     }
     for (int k = 0; k < 4; k++)
         level->mean[at][k] = (weight[0] * value[0][k] + weight[1] * value[1][k] + weight[2] * value[2][k] + weight[3] * value[3][k]) / total;
     for (int c = 0; c < 4; c++) {
-        inner += weight[c] * spread[c] * spread[c];
+        inner += weight[c] * variance[c];
         for (int k = 0; k < 4; k++) {
             float off = value[c][k] - level->mean[at][k];
             outer[k] += weight[c] * off * off;
         }
     }
-    level->spread[at] = sqrtf((inner + larger(larger(outer[0], outer[1]), larger(outer[2], outer[3]))) / total);
+    level->variance[at] = (inner + larger(larger(outer[0], outer[1]), larger(outer[2], outer[3]))) / total;
 }
 
 
 /* The same for one with four children of one size. */
-static inline void make_whole_cell(float value[4][4], const float spread[4], float mean[4], float *widest)
+static inline void make_whole_cell(float value[4][4], const float variance[4], float mean[4], float *own)
 {
     float outer[4], inner;
     for (int k = 0; k < 4; k++)
@@ -142,8 +142,8 @@ static inline void make_whole_cell(float value[4][4], const float spread[4], flo
         float a = value[0][k] - mean[k], b = value[1][k] - mean[k], c = value[2][k] - mean[k], d = value[3][k] - mean[k];
         outer[k] = (a * a + b * b) + (c * c + d * d);
     }
-    inner = (spread[0] * spread[0] + spread[1] * spread[1]) + (spread[2] * spread[2] + spread[3] * spread[3]);
-    *widest = sqrtf((inner + larger(larger(outer[0], outer[1]), larger(outer[2], outer[3]))) * 0.25f);
+    inner = (variance[0] + variance[1]) + (variance[2] + variance[3]);
+    *own = (inner + larger(larger(outer[0], outer[1]), larger(outer[2], outer[3]))) * 0.25f;
 }
 
 /* The first cells of row y of level l: as many of them as have four children of one size, whose number is returned. */
@@ -153,18 +153,18 @@ static int make_whole_cells(const gnoi_image *image, int l, int y)
     size_t wide = (size_t)below->width, to = (size_t)y * (size_t)level->width, from = 2 * (size_t)y * wide;
     int count = (y + 1) << l <= image->height ? image->width >> l : 0;
     for (int x = 0; x < count; x++, to++, from += 2) {
-        float value[4][4], spread[4] = {0, 0, 0, 0};
+        float value[4][4], variance[4] = {0, 0, 0, 0};
         gnoi_image_value(image, l - 1, 2 * x, 2 * y, value[0]);
         gnoi_image_value(image, l - 1, 2 * x + 1, 2 * y, value[1]);
         gnoi_image_value(image, l - 1, 2 * x, 2 * y + 1, value[2]);
         gnoi_image_value(image, l - 1, 2 * x + 1, 2 * y + 1, value[3]);
-        if (below->spread) {
-            spread[0] = below->spread[from];
-            spread[1] = below->spread[from + 1];
-            spread[2] = below->spread[from + wide];
-            spread[3] = below->spread[from + wide + 1];
+        if (below->variance) {
+            variance[0] = below->variance[from];
+            variance[1] = below->variance[from + 1];
+            variance[2] = below->variance[from + wide];
+            variance[3] = below->variance[from + wide + 1];
         }
-        make_whole_cell(value, spread, level->mean[to], &level->spread[to]);
+        make_whole_cell(value, variance, level->mean[to], &level->variance[to]);
     }
     return count;
 }

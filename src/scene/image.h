@@ -4,7 +4,8 @@
  * A value has four channels, linear, red, green and blue multiplied by alpha, so that sums of values are sums of light.
  * A cell of level l holds the mean of 2^l x 2^l elements of the picture, of fewer at its right and lower end; the last level is one
  * cell. Rows run from the picture's bottom up, as T does.
- * Invariant: no element under a cell differs from the cell's mean by more than its spread in any channel.
+ * Invariant: a cell's variance is at least the mean square of what the elements under it differ from its mean by, in any channel. So no part of
+ * the cell, however it is cut out, is off by more than half of the root of that times the cell's area (Cauchy-Schwarz).
  */
 #ifndef GNOI_SCENE_IMAGE_H
 #define GNOI_SCENE_IMAGE_H
@@ -16,7 +17,7 @@
 typedef struct gnoi_image_level {
     int width, height; /* cells */
     float (*mean)[4];  /* NULL on level 0 of a picture of bytes */
-    float *spread;     /* NULL on level 0, where it is zero */
+    float *variance;     /* NULL on level 0, where it is zero */
     float *height_of;  /* means of red, green and blue; NULL until gnoi_image_make_heights */
 } gnoi_image_level;
 
