@@ -162,10 +162,14 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
         answer(looks, which[i], sum[i], lanes.weight[i]);
 }
 
-static void count_kinds(const int *kind, int first, int end, int *counts)
+/* Returns the last kind there is, or `last`. */
+static int count_kinds(const int *kind, int first, int end, int last, int *counts)
 {
-    for (int i = first; i < end; i++)
+    for (int i = first; i < end; i++) {
         counts[kind[i] + 1]++;
+        last = kind[i] > last ? kind[i] : last;
+    }
+    return last;
 }
 
 static void sort_by_kind(const int *kind, int first, int end, int *place, unsigned short *order)
@@ -178,12 +182,12 @@ static void sort_by_kind(const int *kind, int first, int end, int *place, unsign
 static void answer_looks(const gnoi_looks *looks, int count)
 {
     unsigned short order[GNOI_LOOKS];
-    int place[GNOI_LOOK_KINDS + 1] = {0}, total = 0, first, i; /* pixels that have no look of their own come first, with kind -1 */
+    int place[GNOI_LOOK_KINDS + 1] = {0}, total = 0, first, last, i; /* pixels that have no look of their own come first, with kind -1 */
     const int *kind = looks->lanes.kind;
-    count_kinds(kind, 0, count, place);
-    count_kinds(kind, GNOI_ASKED, looks->end, place);
+    last = count_kinds(kind, 0, count, GNOI_LOOK_IN_CELL, place);
+    last = count_kinds(kind, GNOI_ASKED, looks->end, last, place);
     first = place[0];
-    for (int k = 0; k <= GNOI_LOOK_KINDS; k++) {
+    for (int k = 0; k <= last + 1; k++) {
         int n = place[k];
         place[k] = total;
         total += n;
@@ -504,8 +508,9 @@ static int ask_some(gnoi_looks *looks, const gnoi_image *image, const gno_textur
                     const double *xs, const double *ys, float (*mean)[4])
 {
     int place = looks->count % GNOI_VIEWS, some = count < GNOI_VIEWS - place ? count : GNOI_VIEWS - place;
+    gnoi_view_extent extent = {image->width, image->height, period_of(how)};
     gnoi_look *l = &looks->look[looks->count];
-    gnoi_views_set(&looks->views, place, p, x, y, image->width, image->height, period_of(how));
+    gnoi_views_set(&looks->views, place, some, p, x, y, &extent);
     for (int i = 0; i < some; i++) {
         l[i].image = image;
         l[i].how = how;

@@ -101,10 +101,11 @@ static void pad(gnoi_views *a, int count)
     }
 }
 
-VECTOR_CLONES static void set(gnoi_views *restrict v, int first, const gnoi_pattern *restrict pattern, double x, double y)
+INLINE void set_some(gnoi_views *restrict v, int first, int count, const gnoi_pattern *restrict pattern, double x, double y, const gnoi_view_extent *restrict extent)
 {
     const gnoi_pattern p = *pattern;
-    for (int i = 0; i < GNOI_VIEW_RUN; i++) {
+    const gnoi_view_extent e = *extent;
+    for (int i = 0; i < count; i++) {
         v->s[first + i] = gnoi_plane_at(&p.s, x + i, y);
         v->t[first + i] = gnoi_plane_at(&p.t, x + i, y);
         v->w[first + i] = gnoi_plane_at(&p.w, x + i, y);
@@ -114,17 +115,24 @@ VECTOR_CLONES static void set(gnoi_views *restrict v, int first, const gnoi_patt
         v->ty[first + i] = p.t.fy;
         v->wx[first + i] = p.w.fx;
         v->wy[first + i] = p.w.fy;
+        v->width[first + i] = e.width;
+        v->height[first + i] = e.height;
+        v->period[first + i] = e.period;
     }
 }
 
-void gnoi_views_set(gnoi_views *v, int first, const gnoi_pattern *pattern, double x, double y, double width, double height, double period)
+VECTOR_CLONES static void set_run(gnoi_views *restrict v, int first, const gnoi_pattern *restrict pattern, double x, double y,
+                                  const gnoi_view_extent *restrict extent)
 {
-    set(v, first, pattern, x, y);
-    for (int i = 0; i < GNOI_VIEW_RUN; i++) {
-        v->width[first + i] = width;
-        v->height[first + i] = height;
-        v->period[first + i] = period;
-    }
+    set_some(v, first, GNOI_VIEW_RUN, pattern, x, y, extent);
+}
+
+void gnoi_views_set(gnoi_views *v, int first, int count, const gnoi_pattern *pattern, double x, double y, const gnoi_view_extent *extent)
+{
+    if (count == 1)
+        set_some(v, first, 1, pattern, x, y, extent);
+    else
+        set_run(v, first, pattern, x, y, extent);
 }
 
 void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int first)

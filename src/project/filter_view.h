@@ -48,8 +48,13 @@ typedef struct gnoi_look_lanes {
 #define GNOI_LOOK_KINDS (2 * GNOI_LOOK_SIZES * GNOI_LOOK_SIZES)
 #define GNOI_LOOK_IN_CELL 0 /* the kind of those that lie within one cell */
 
-/* Pixels from place `first` on: the first one's middle is (x,y), the others follow to its right; GNOI_VIEW_RUN are written. */
-void gnoi_views_set(gnoi_views *views, int first, const gnoi_pattern *pattern, double x, double y, double width, double height, double period);
+/* A picture's extents in elements, and its period as in gnoi_views. */
+typedef struct gnoi_view_extent {
+    double width, height, period;
+} gnoi_view_extent;
+
+/* Pixels from place `first` on: the first one's middle is (x,y), the others follow to its right; up to GNOI_VIEW_RUN places are written. */
+void gnoi_views_set(gnoi_views *views, int first, int count, const gnoi_pattern *pattern, double x, double y, const gnoi_view_extent *extent);
 
 /* Finds the looks of `count` pixels, from place `first` on. Both are written up to the next multiple of 16. */
 void gnoi_views_take(gnoi_views *views, int count, gnoi_look_lanes *looks, int first);
