@@ -10,7 +10,8 @@
 #include <math.h>
 
 #define CORNERS 12       /* of a part: the square's four and one for each cut by two cells' sides, a horizon and rounding */
-#define TOLERANCE 0.0015 /* aim for the error of a pixel's mean */
+#define TOLERANCE 0.002  /* aim for the error of a pixel's mean */
+#define MOST_DEVIATION 0.0025 /* of it where the pixel is so thin that all of its n parts are cut ones: deviation / sqrt(n) */
 #define START_CELLS 3    /* at most so many cells side by side when a pixel is begun */
 #define STRETCH 3.0      /* within a part w changes by at most this factor before it is halved */
 #define MAX_HALVINGS 6
@@ -31,6 +32,7 @@ typedef struct filter {
     gnoi_screen_plane s, t, w; /* s and t in elements, over the pixel */
     int top;                   /* the picture's last level */
     double sum[4], area;
+    double least, most;        /* of w in the part of the pixel at hand; where that was cut off from another, it is one of them */
 } filter;
 
 /* A cell along one axis: interval `index` of 2^level elements of copy `copy` of the pattern; above the last level an interval of
@@ -172,12 +174,14 @@ static cell cell_at(const filter *f, int level, int elements, double v)
 
 /* ---- the tree ------------------------------------------------------------------------------------------------------------ */
 
-/* 1 when the part lies inside the pixel's square, so that it is its whole cell. */
-static int is_whole(const part *a)
+/* 1 when the part lies inside the pixel's square, or inside what is left of that when it has been halved, so that it is its whole cell. */
+static int is_whole(const filter *f, const part *a)
 {
-    for (int i = 0; i < a->count; i++)
-        if (fabs(a->p[i].x) > 0.5 - 1e-12 || fabs(a->p[i].y) > 0.5 - 1e-12)
+    for (int i = 0; i < a->count; i++) {
+        double w = at(&f->w, a->p[i]);
+        if (fabs(a->p[i].x) > 0.5 - 1e-12 || fabs(a->p[i].y) > 0.5 - 1e-12 || w <= f->least || w >= f->most)
             return 0;
+    }
     return 1;
 }
 
@@ -195,7 +199,8 @@ static double stretch_of(const filter *f, const part *a)
 
 static int is_enough(const filter *f, const part *a, double area, float variance)
 {
-    return gnoi_filter_is_small(area, TOLERANCE, variance) || (is_whole(a) && gnoi_filter_is_small(area * 3 * stretch_of(f, a), TOLERANCE, variance));
+    int few = area * (double)variance <= MOST_DEVIATION * MOST_DEVIATION;
+    return (few && gnoi_filter_is_small(area, TOLERANCE, variance)) || (is_whole(f, a) && gnoi_filter_is_small(area * 3 * stretch_of(f, a), TOLERANCE, variance));
 }
 
 static void value_at(const filter *f, int level, cell s, cell t, float value[4])
@@ -388,6 +393,8 @@ static void integrate(filter *f, const part *a, int halvings)
         most = w > most ? w : most;
     }
     if (least > 0 && most <= STRETCH * least) {
+        f->least = least * (1 + 1e-9);
+        f->most = most * (1 - 1e-9);
         if (f->wrap == GNO_WRAP_CLAMP || f->wrap == GNO_WRAP_NONE)
             integrate_once(f, a);
         else
@@ -413,7 +420,7 @@ int gnoi_filter_cut(const gnoi_image *image, gno_wrap wrap, const gnoi_screen_pl
                     const gnoi_screen_plane *w, float mean[4])
 {
     static const part square = {4, {{-0.5, -0.5}, {0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}}};
-    filter f = {image, wrap, *s, *t, *w, image->level_count - 1, {0, 0, 0, 0}, 0};
+    filter f = {image, wrap, *s, *t, *w, image->level_count - 1, {0, 0, 0, 0}, 0, 0, 0};
     integrate(&f, &square, 0);
     for (int k = 0; k < 4; k++)
         mean[k] = f.area > 0 ? (float)(f.sum[k] / f.area) : 1;

@@ -270,6 +270,35 @@ static void test_long(void **state)
     gno_context_destroy(context);
 }
 
+/* Diagonal pixels in which w changes more than threefold, so that they are halved before they are cut by cells. */
+static void test_halved(void **state)
+{
+    static const struct { double length, width, turn, bend, fall; } pixels[] = {
+        {228.0, 9.94, 0.870, 0.820, 5.73}, {213.6, 8.78, 0.801, 0.772, 3.95}, {250.4, 15.16, 0.826, 0.808, 0.89},
+    };
+    gno_context *context = NULL;
+    gno_texture how = gno_texture_default(GNO_MAP_UV);
+    (void)state;
+    assert_int_equal(gno_context_create(NULL, &context), GNO_OK);
+    for (int i = 0; i < 6; i++) {
+        double length = pixels[i / 2].length, width = pixels[i / 2].width, c = cos(pixels[i / 2].turn), d = sin(pixels[i / 2].turn);
+        double wx = pixels[i / 2].bend * cos(pixels[i / 2].fall), wy = pixels[i / 2].bend * sin(pixels[i / 2].fall), slow[4];
+        gnoi_pattern p = {{(length * c) / 64 + 0.3 * wx, -width * d / 64 + 0.3 * wy, 0.3},
+                          {length * d / 42 + 0.6 * wx, width * c / 42 + 0.6 * wy, 0.6},
+                          {wx, wy, 1}};
+        float fast[4], *values;
+        gnoi_image image = make_picture(context, i % 2 == 0 ? CHECKER : PHOTOGRAPH, 1, 64, 42, &values);
+        gnoi_filter_pixel(&image, &how, &p, 0, 0, 0, 0, fast);
+        brute_force(values, 64, 42, GNO_WRAP_REPEAT, &p, 0, 0, 1500, slow);
+        for (int k = 0; k < 4; k++)
+            if (!(fabs((double)fast[k] - slow[k]) <= ONE_STEP))
+                fail_msg("pixel %d, channel %d: %g is not %g", i / 2, k, (double)fast[k], slow[k]);
+        gnoi_image_free(context, &image);
+        free(values);
+    }
+    gno_context_destroy(context);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -278,6 +307,7 @@ int main(void)
         cmocka_unit_test(test_slanted),
         cmocka_unit_test(test_flat),
         cmocka_unit_test(test_long),
+        cmocka_unit_test(test_halved),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
