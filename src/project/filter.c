@@ -149,6 +149,8 @@ static void answer_together(const gnoi_looks *looks, const unsigned short *which
             const gnoi_look *l = &looks->look[which[i]];
             int column = looks->lanes.column[which[i]], first = looks->lanes.row[which[i]] + (int)lanes.first_row[i] + r0;
             int m = lanes.rows[i] - r0 < n ? lanes.rows[i] - r0 : n, level = level_of(looks, which[i]);
+            if (m <= 0)
+                continue;
             if (level == 0 && l->image->is_solid && rows_follow(l, first, m) && column + (int)lanes.low_x[i] - 1 >= 0 &&
                 column + (int)lanes.high_x[i] + 1 + most <= l->image->width) {
                 add_bytes(l->image, cells, m, lanes.most, column, first, i, sum[i]);

@@ -12,6 +12,7 @@
 #define CORNERS 12       /* of a part: the square's four and one for each cut by two cells' sides, a horizon and rounding */
 #define TOLERANCE 0.002  /* aim for the error of a pixel's mean */
 #define MOST_DEVIATION 0.0025 /* of it where the pixel is so thin that all of its n parts are cut ones: deviation / sqrt(n) */
+#define MOST_LEAN 0.004 /* stretch times deviation of a whole cell: elements weigh by 1/w^3, so it is off by 3 / sqrt(12) of that, and stripes all one way */
 #define START_CELLS 3    /* at most so many cells side by side when a pixel is begun */
 #define STRETCH 3.0      /* within a part w changes by at most this factor before it is halved */
 #define MAX_HALVINGS 6
@@ -200,7 +201,13 @@ static double stretch_of(const filter *f, const part *a)
 static int is_enough(const filter *f, const part *a, double area, float variance)
 {
     int few = area * (double)variance <= MOST_DEVIATION * MOST_DEVIATION;
-    return (few && gnoi_filter_is_small(area, TOLERANCE, variance)) || (is_whole(f, a) && gnoi_filter_is_small(area * 3 * stretch_of(f, a), TOLERANCE, variance));
+    double stretch;
+    if (few && gnoi_filter_is_small(area, TOLERANCE, variance))
+        return 1;
+    if (!is_whole(f, a))
+        return 0;
+    stretch = stretch_of(f, a);
+    return stretch * stretch * (double)variance <= MOST_LEAN * MOST_LEAN && gnoi_filter_is_small(area * 3 * stretch, TOLERANCE, variance);
 }
 
 static void value_at(const filter *f, int level, cell s, cell t, float value[4])

@@ -157,7 +157,8 @@ void gnoi_batch_shade(gnoi_batch *b, const gnoi_view *view, const gnoi_lamp *lam
         for (int k = 0; k < 3; k++)
             b->kd[k][i] = b->ks[k][i] = b->rgb[k][i] = 0;
     }
-    memset(b->gloss, 0, sizeof b->gloss);
+    for (int k = 0; k < 3; k++)
+        memset(b->gloss[k], 0, (size_t)count * sizeof *b->gloss[k]);
     prepare(b, count, view->orthographic, (float)view->forward.x, (float)view->forward.y, (float)view->forward.z);
     for (int j = 0; j < b->lamp_count; j++) {
         const gnoi_lamp *lamp = &lamps[j];

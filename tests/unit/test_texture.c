@@ -560,13 +560,45 @@ static void test_every_allocation_fails(void **state)
     }
 }
 
+/* ---- refinement ---------------------------------------------------------------------------------------------------------------- */
+
+/* A texture is filtered already: its changes from row to row call for no finer lines, in no row of any tile. */
+static void test_no_finer_lines(void **state)
+{
+    enum { WIDE = 100 };
+    static const double corners[4][3] = {{-64, -64, 0}, {64, -64, 0}, {64, 64, 0}, {-64, 64, 0}};
+    static float rgb[WIDE * WIDE * 3];
+    const float values[4] = {0, 1, 1, 0};
+    gno_image_def image = gno_image_def_default();
+    gno_light light = gno_light_default();
+    gno_material m = white();
+    gno_stats stats;
+    bed b;
+    (void)state;
+    start(&b);
+    image.width = image.height = WIDE;
+    assert_int_equal(gno_scene_set_image(b.scene, &image), GNO_OK);
+    light.type = GNO_LIGHT_DIRECTIONAL;
+    light.direction[2] = -1;
+    assert_int_equal(gno_scene_add_light(b.scene, NULL, &light, NULL), GNO_OK);
+    m.texture = gno_texture_default(GNO_MAP_UV);
+    m.texture.kind = GNO_TEXTURE_IMAGE;
+    m.texture.image = add_pixels(b.scene, 2, 2, 1, values);
+    add_quad(&b, corners, 32, 0, &m);
+    look(&b, GNO_CAMERA_ORTHOGRAPHIC, 0, 0, 20, 0, 0, 0, 50);
+    assert_int_equal(gno_render(b.scene, NULL, rgb, &stats), GNO_OK);
+    near_to(stats.refined_pixels, 0, 0);
+    assert_true(rgb[3 * (WIDE + 1)] != rgb[3 * (5 * WIDE + 1)]);
+    end(&b);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_plane_in_perspective), cmocka_unit_test(test_holes_for_the_eye), cmocka_unit_test(test_holes_in_shadows),
         cmocka_unit_test(test_sphere_patch),         cmocka_unit_test(test_cylinder),          cmocka_unit_test(test_height_ramp),
         cmocka_unit_test(test_normal_map),           cmocka_unit_test(test_bad_values),        cmocka_unit_test(test_files),
-        cmocka_unit_test(test_every_allocation_fails),
+        cmocka_unit_test(test_every_allocation_fails), cmocka_unit_test(test_no_finer_lines),
     };
     return cmocka_run_group_tests(tests, NULL, NULL) != 0;
 }
